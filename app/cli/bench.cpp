@@ -22,7 +22,7 @@ struct Options {
     RenderSettings picture;
     int orbit = 1;
 
-    bool onBuiltIn() const { return !scene.volume.path && !scene.session.file; }
+    bool onBuiltIn() const { return !scene.volume.path && !scene.sessionFile; }
     /// All where none are named; but slices only with a GPU at work, since a software rasterizer takes minutes.
     std::set<BenchRow> rows() const {
         if (only) return *only;
@@ -44,10 +44,7 @@ const Work kWork{{"measuring", kMeasureBytesPerVoxel + 4 + 3 + 5, kLeanMeasureBy
 /// One name per comma.
 std::set<BenchRow> parseRows(const std::string& text, const std::string& option) {
     std::set<BenchRow> rows;
-    for (std::size_t start = 0, end = 0; end != std::string::npos; start = end + 1) {
-        end = text.find(',', start);
-        rows.insert(atOption(option, [&] { return fromName<BenchRow>(text.substr(start, end - start)); }));
-    }
+    for (const std::string& part : split(text, ',')) rows.insert(parseName<BenchRow>(part, option));
     return rows;
 }
 
@@ -76,7 +73,7 @@ public:
         }
         m_inputs = inputsOf(scene, kWork, m_results.notices);
         m_mainVolume = m_inputs.session.variable().source.path;
-        m_mainTf = scene.tf.spec.value_or(scene.session.file ? "session" : "default");
+        m_mainTf = scene.tf.spec.value_or(scene.sessionFile ? "session" : "default");
         m_bench.threads = std::move(threads);
         m_bench.repeat = options.repeat;
         m_bench.engine = m_inputs.session.measure->engine;
@@ -122,9 +119,7 @@ public:
         bench(cubes, m_bench, m_progress.phase("cubes"), m_results);
     }
 
-    Answer answer() const {
-        return {textOfMemory() + "\n" + textOfRows() + textOfRatios(), json(), m_results.notices, {}};
-    }
+    Answer answer() const { return {textOfMemory() + "\n" + textOfRows() + textOfRatios(), json(), m_results.notices}; }
 
 private:
     /// All rows under `tf` and, unless the user wants this one alone, some under two of other densities.
@@ -315,23 +310,18 @@ Command addBench(CLI::App& program) {
     app->get_option("VOLUME")->description("the volume to measure with, as in other commands; without one, sample:knee "
                                            "under tents:3, and cubes of 128 and 256 "
                                            "voxels along each side");
-    o->scene.session.add(*app);
+    o->scene.addSession(*app);
     o->scene.tf.addSource(*app);
     app->get_option("--tf")->description("transfer function; without it that of the volume, one that gives every voxel "
                                          "a little opacity (dense), and one that gives it to 3 % of them (sparse)");
     o->scene.camera.add(*app);
     o->scene.clip.add(*app);
     o->scene.engine.add(*app);
+    addValue(*app, "--only", "ROW,...", o->only, parseRows,
+             "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
+             "optimize-newton, optimize-whole, refine, refine-500, refine-direct, render");
     addValue(
-        *app, "--only", "ROW,...",
-        [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },
-        "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
-        "optimize-newton, optimize-whole, refine, refine-500, refine-direct, render");
-    addValue(
-        *app, "--repeat", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->repeat = static_cast<int>(parseInteger(text, option, 1, 1000));
-        },
+        *app, "--repeat", "N", o->repeat, wholeFrom(1, 1000),
         "runs of each row after a first one that does not count; the median is reported (default: 3, and more for rows "
         "that take less than 0.2 s)");
     addValue(
@@ -342,19 +332,11 @@ Command addBench(CLI::App& program) {
             o->picture.height = size.height;
         },
         "pixels of the row \"render\" (default 512x512)");
-    addValue(
-        *app, "--step", "D",
-        [o](const std::string& text, const std::string& option) {
-            o->picture.stepInD0 = parseRealAbove(text, option, 0, 16);
-        },
-        "largest distance of samples in the row \"render\", in reference lengths (default 0.5)");
+    addValue(*app, "--step", "D", o->picture.stepInD0, realAbove(0, 16),
+             "largest distance of samples in the row \"render\", in reference lengths (default 0.5)");
     app->add_flag("--shading", o->picture.light.on, "draw the row \"render\" with light from the eye");
-    addValue(
-        *app, "--orbit", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->orbit = static_cast<int>(parseInteger(text, option, 1, 1000));
-        },
-        "views from all around that the row \"render\" draws; --json lists the time of each (default 1)");
+    addValue(*app, "--orbit", "N", o->orbit, wholeFrom(1, 1000),
+             "views from all around that the row \"render\" draws; --json lists the time of each (default 1)");
     app->add_flag("--full", o->full,
                   "also measure a cube of 512 voxels along each side, which takes some minutes and 2 GiB of memory");
     return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};

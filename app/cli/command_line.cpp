@@ -1,15 +1,13 @@
 #include "command_line.h"
 
+#include <algorithm>
 #include <cctype>
 
 namespace pellucid::cli {
 
 namespace {
 
-std::string& kept() {
-    static std::string s_line;
-    return s_line;
-}
+std::string g_line; // as commandLineOf() writes it
 
 /// Characters that mean nothing to a shell, anywhere in a word.
 bool isPlain(char c) {
@@ -18,14 +16,15 @@ bool isPlain(char c) {
 
 } // namespace
 
-std::string shellQuoted(const std::string& word) {
-    bool plain = !word.empty();
+std::string inSingleQuotes(const std::string& word) {
     std::string quoted = "'";
-    for (const char c : word) {
-        plain = plain && isPlain(c);
-        quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
-    return plain ? word : quoted + "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string shellQuoted(const std::string& word) {
+    const bool isPlainWord = !word.empty() && std::all_of(word.begin(), word.end(), isPlain);
+    return isPlainWord ? word : inSingleQuotes(word);
 }
 
 std::string commandLineOf(std::span<const std::string> arguments) {
@@ -34,7 +33,7 @@ std::string commandLineOf(std::span<const std::string> arguments) {
     return line;
 }
 
-void keepCommandLine(std::span<const std::string> arguments) { kept() = commandLineOf(arguments); }
-const std::string& commandLine() { return kept(); }
+void keepCommandLine(std::span<const std::string> arguments) { g_line = commandLineOf(arguments); }
+const std::string& commandLine() { return g_line; }
 
 } // namespace pellucid::cli

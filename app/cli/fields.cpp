@@ -6,7 +6,6 @@
 
 #include "commands.h"
 #include "optimize/fields.h"
-#include "options/field_options.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -152,8 +151,8 @@ Answer run(const Options& o, Progress& progress) {
               {"files", names},
               {"seconds", {{"total", total.seconds()}}}};
     addProfile(json, input.settings);
-    if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    return {text, std::move(json), opened.notices(), {}};
+    addMapping(json, opened.scene);
+    return {text, std::move(json), opened.notices()};
 }
 
 } // namespace
@@ -165,17 +164,17 @@ Command addFields(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
     addOutputFolder(
-        *app, "--out", "DIR", [o](const std::string& path) { o->out = path; },
+        *app, "--out", o->out,
         "folder for visibility.nrrd, saliency_brightness.nrrd, saliency_saturation.nrrd, vws.nrrd; made where missing")
         ->required();
     addRepeated(
-        *app, "--feature", "NAME", [o](const std::string& text, const std::string&) { o->features.push_back(text); },
+        *app, "--feature", "NAME", o->features, anyText,
         "also the voxels of this feature alone, 0 elsewhere: visibility_NAME.nrrd and so on; repeatable; all: of each "
         "feature");
     addRepeated(
-        *app, "--field", listOf<FieldKind>("|"),
+        *app, "--field", joined(kNamesOf<FieldKind>.names, "|"),
         [o](const std::string& text, const std::string& option) {
-            const FieldKind kind = atOption(option, [&] { return fromName<FieldKind>(text); });
+            const auto kind = parseName<FieldKind>(text, option);
             if (std::find(o->kinds.begin(), o->kinds.end(), kind) == o->kinds.end()) o->kinds.push_back(kind);
         },
         "this field alone; repeatable (default: all but saliency, the sum of both with the weights u1 and u2)");

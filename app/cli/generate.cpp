@@ -72,9 +72,7 @@ Answer run(const Options& o, Progress& progress) {
                                  : std::to_string(files.size()) + " frames, " + files.front() + " to " + files.back();
     return {"wrote " + what + ": " + dimsText(volume->dims()) + " voxels, " + name(volume->sampleType()) +
                 (areFiles ? ", " + bytesText(bytes) : "") + "\n",
-            std::move(json),
-            {},
-            {}};
+            std::move(json)};
 }
 
 } // namespace
@@ -87,28 +85,12 @@ Command addGenerate(CLI::App& program) {
            "a name that `pellucid-cli samples` lists")
         ->required()
         ->type_name("");
-    addValue(
-        *app, "--size", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->size = static_cast<int>(parseInteger(text, option, 8, 65536));
-        },
-        "voxels along the longest axis (default: the sample's own)");
-    addValue(
-        *app, "--frames", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->frames = static_cast<int>(parseInteger(text, option, 1, 1'000'000));
-        },
-        "the first N time steps, a file each: --out is a pattern (f_%03d.nrrd) or gets _000, _001 …");
-    addValue(
-        *app, "--seed", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->seed = static_cast<std::uint32_t>(parseInteger(text, option, 0, 4294967295));
-        },
-        "seed of the noise (default 1)");
-    addValue(
-        *app, "--out", "FILE", [o](const std::string& text, const std::string&) { o->out = text; },
-        "the file to write, *.nrrd")
-        ->required();
+    addValue(*app, "--size", "N", o->size, wholeFrom(8, 65536),
+             "voxels along the longest axis (default: the sample's own)");
+    addValue(*app, "--frames", "N", o->frames, wholeFrom(1, 1'000'000),
+             "the first N time steps, a file each: --out is a pattern (f_%03d.nrrd) or gets _000, _001 …");
+    addValue(*app, "--seed", "N", o->seed, wholeFrom<std::uint32_t>(0, 4294967295), "seed of the noise (default 1)");
+    addValue(*app, "--out", "FILE", o->out, anyText, "the file to write, *.nrrd")->required();
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

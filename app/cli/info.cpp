@@ -24,7 +24,7 @@ std::string textOf(const Volume& v) {
         {"type", name(v.sampleType())},
         {"spacing", vectorText(v.geometry().spacing) + " world units"},
         {"origin", vectorText(v.geometry().origin) + " world units"},
-        {"frame", v.geometry().frame == Frame::Patient ? "patient (LPS, mm)" : "the file's own"},
+        {"frame", v.geometry().worldAxes == WorldAxes::Patient ? "patient (LPS, mm)" : "the file's own"},
         {"axes", axesText(v.geometry())},
         {"range", rangeText(v.range().lo, v.range().hi)},
     };
@@ -56,7 +56,7 @@ Json jsonOf(const Volume& v) {
             {"type", name(v.sampleType())},
             {"spacing", jsonFromVector(v.geometry().spacing)},
             {"origin", jsonFromVector(v.geometry().origin)},
-            {"frame", v.geometry().frame == Frame::Patient ? "patient" : "file"},
+            {"frame", v.geometry().worldAxes == WorldAxes::Patient ? "patient" : "file"},
             {"directions", directions(v.geometry())},
             {"range", jsonFromRange(v.range())},
             {"data_range", jsonFromRange(v.dataRange())},
@@ -143,21 +143,17 @@ Json framesJson(const Scene& scene) {
 Command addInfo(CLI::App& program) {
     CLI::App* app = program.add_subcommand("info", "What a volume holds: size, type, spacing, range, invalid voxels");
     const auto options = std::make_shared<SceneOptions>();
-    options->volume.add(*app);
-    options->variables.add(*app);
-    options->session.add(*app);
+    options->addForData(*app);
     return {app, [options](Progress& progress) {
                 const Opened opened = resolve(*options, progress, {.use = {}, .byEngine = false, .needsTf = false});
                 TimeSeries& series = *opened.scene.series;
                 if (series.varies() && !series.listing().declaredRange) series.survey(progress.phase("reading frames"));
                 const Volume& volume = *opened.scene.volume;
                 const FileContents contents = contentsOfFrame(opened.scene);
-                Answer answer{textOf(volume), jsonOf(volume), opened.sessionNotices, {}};
+                Answer answer{textOf(volume), jsonOf(volume), opened.sessionNotices};
                 if (!contents.arrays.empty()) {
                     answer.json["arrays"] = contents.arrays;
-                    std::string arrays;
-                    for (const std::string& name : contents.arrays) arrays += (arrays.empty() ? "" : ", ") + name;
-                    answer.text += listing({{"arrays", arrays}});
+                    answer.text += listing({{"arrays", joined(contents.arrays)}});
                 }
                 if (series.varies()) {
                     answer.text += framesText(opened.scene);

@@ -36,17 +36,9 @@ void addCommonOptions(CLI::App& app, CommonOptions& common) {
     const char* const group = "General";
     app.add_flag("--json", common.json, "print one JSON object")->group(group);
     app.add_flag("--progress", common.progress, "show progress on stderr even if that is not a terminal")->group(group);
+    addValue(app, "--threads", "N", common.threads, wholeFrom(1, 1024), "threads to use (default: all cores)", group);
     addValue(
-        app, "--threads", "N",
-        [&common](const std::string& text, const std::string& option) {
-            common.threads = static_cast<int>(parseInteger(text, option, 1, 1024));
-        },
-        "threads to use (default: all cores)", group);
-    addValue(
-        app, "--memory", "GIB",
-        [&common](const std::string& text, const std::string& option) {
-            common.memoryGiB = parseRealAbove(text, option, 0, 1e6);
-        },
+        app, "--memory", "GIB", common.memoryGiB, realAbove(0, 1e6),
         "memory that the program may use, in GiB; what needs more is refused before it starts (default: what is free)",
         group);
     app.get_help_ptr()->group(group);

@@ -111,11 +111,9 @@ Answer run(const Options& o, Progress& progress) {
     seconds.total = total.seconds();
     Json json = jsonOf(opened.scene, m, matrices, engine, seconds);
     addProfile(json, input.settings);
-    if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    return {textOf(opened.scene, m, matrices, engine + profileText(input.settings), seconds),
-            std::move(json),
-            opened.notices(),
-            {}};
+    addMapping(json, opened.scene);
+    return {textOf(opened.scene, m, matrices, engine + profileText(input.settings), seconds), std::move(json),
+            opened.notices()};
 }
 
 } // namespace

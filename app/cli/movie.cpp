@@ -14,6 +14,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_watch.h"
+#include "base/text.h"
+#include "command_line.h"
 #include "output.h"
 #include "parse.h"
 
@@ -35,13 +37,6 @@ std::string findProgram() {
         if (access(file.c_str(), X_OK) == 0 && !fs::is_directory(file)) return file;
     }
     return {};
-}
-
-/// A file name in a list for ffmpeg.
-std::string quoted(const std::string& name) {
-    std::string text = "'";
-    for (const char c : name) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
 }
 
 /// A new folder beside `path`, which goes with all that is in it when this does.
@@ -123,31 +118,17 @@ void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond
     std::string list = "ffconcat version 1.0\n";
     const std::string duration = "duration " + plainText(1 / framesPerSecond) + "\n";
     for (const std::string& picture : pictures)
-        list += "file " + quoted(fs::absolute(picture).string()) + "\n" + duration;
+        list += "file " + inSingleQuotes(fs::absolute(picture).string()) + "\n" + duration;
     writeTextAtomically(pictureList, list);
-    const int status = runProgram({findProgram(),
-                                   "-nostdin",
-                                   "-y",
-                                   "-loglevel",
-                                   "error",
-                                   "-f",
-                                   "concat",
-                                   "-safe",
-                                   "0",
-                                   "-i",
-                                   pictureList,
-                                   "-r",
-                                   plainText(framesPerSecond),
-                                   "-vf",
-                                   "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                   "-c:v",
-                                   "libx264",
-                                   "-crf",
-                                   "18",
-                                   "-pix_fmt",
-                                   "yuv420p",
-                                   film},
-                                  log, stop);
+    std::vector<std::string> words{findProgram()};
+    const auto add = [&](const std::string& options, const std::string& value) {
+        for (std::string& word : splitWords(options)) words.push_back(std::move(word));
+        words.push_back(value);
+    };
+    add("-nostdin -y -loglevel error -f concat -safe 0 -i", pictureList);
+    add("-r", plainText(framesPerSecond));
+    add("-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 18 -pix_fmt yuv420p", film);
+    const int status = runProgram(words, log, stop);
     std::error_code failed;
     if (status == 0 && fs::is_regular_file(film)) {
         fs::rename(film, path, failed);

@@ -117,8 +117,7 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     o.report.check();
-    if (!o.targets && !o.scene.session.file)
-        throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
+    if (!o.targets && !o.scene.sessionFile) throw isRequired("--target", "optimize");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     Scene scene = opened.scene;
     std::vector<std::string> notices = opened.notices();
@@ -130,12 +129,8 @@ Answer run(const Options& o, Progress& progress) {
     Workspace workspace;
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
 
-    JobControl job = progress.phase("optimizing");
-    job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
-    int moves = -1;
-    const auto tell = [&](const OptimizeState& state) {
-        progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
-    };
+    const JobControl job = progress.openPhase("optimizing");
+    const auto tell = movesTold(progress);
     const auto known = knownAnswers(*scene.session.runs, normalizedTargets(targets, scene.tf.features.size()));
     OptimizeResult result;
     if (o.scene.camera.best) {
@@ -160,10 +155,9 @@ Answer run(const Options& o, Progress& progress) {
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     json["empty"] = emptyFeatures(scene.tf, *scene.histogram);
     addProfile(json, input.settings);
-    if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    std::vector<std::string> remarks;
-    for (const std::string& remark : {keptText(result), faintText(result)})
-        if (!remark.empty()) remarks.push_back(remark);
+    addMapping(json, opened.scene);
+    std::vector<std::string> remarks{keptText(result), faintText(result)};
+    std::erase(remarks, "");
     if (result.history[result.best].objective >= options.tolerance && result.reason != StopReason::Visible) {
         const Verdict verdict =
             workspace.explain(input, targets, limits, options, result, progress.phase("explaining"), known);
@@ -192,25 +186,16 @@ Command addOptimize(CLI::App& program) {
     o->scene.camera.mayBeBest = true;
     o->scene.addForFigures(*app);
     addValue(
-        *app, "--target", kTargetForms,
-        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        *app, "--target", kTargetForms, o->targets, TargetInput::parse,
         "one number for each feature, from 0 on, scaled to sum 1; or all equal, by the value of their peaks, turned "
         "round, or all for one; required unless a session has targets");
     o->search.add(*app);
-    addRepeated(
-        *app, "--limits", "NAME:LO:HI",
-        [o](const std::string& text, const std::string& option) { o->limits.push_back(parseLimits(text, option)); },
-        "keep the opacity of this feature within LO and HI");
-    addRepeated(
-        *app, "--lock", "NAME", [o](const std::string& text, const std::string&) { o->locked.push_back(text); },
-        "keep the opacity of this feature as it is");
-    addOutputFile(
-        *app, "--out-tf", "FILE", [o](const std::string& path) { o->outTf = path; },
-        "write the optimized transfer function (the best one seen)");
+    addRepeated(*app, "--limits", "NAME:LO:HI", o->limits, parseLimits,
+                "keep the opacity of this feature within LO and HI");
+    addRepeated(*app, "--lock", "NAME", o->locked, anyText, "keep the opacity of this feature as it is");
+    addOutputFile(*app, "--out-tf", o->outTf, "write the optimized transfer function (the best one seen)");
     o->report.add(*app);
-    addOutputFile(
-        *app, "--out-camera", "FILE", [o](const std::string& path) { o->outCamera = path; },
-        "write the camera, such as that of --view best");
+    addOutputFile(*app, "--out-camera", o->outCamera, "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,
                   "exit with status 1 if the targets are not reached; the answer is written all the same");
     return {app, [o](Progress& progress) { return run(*o, progress); }};

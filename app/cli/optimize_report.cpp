@@ -27,22 +27,17 @@ void writeCurves(const Run& run, const std::string& path) {
 
 void ReportOptions::add(CLI::App& app) {
     addOutputFolder(
-        app, "--report", "DIR", [this](const std::string& path) { folder = path; },
+        app, "--report", folder,
         "write report.html, one self-contained page (pictures before and after, bars, curves, how alike the moves "
         "look, "
         "settings, this command), and curves.csv");
-    addValue(
-        app, "--report-size", "WxH",
-        [this](const std::string& text, const std::string& option) { size = parseImageSize(text, option); },
-        "pixels of the report's pictures (default 512x512)");
-    addOutputFile(
-        app, "--curves", "FILE", [this](const std::string& path) { curves = path; },
-        "write distance, VWS and opacities over the moves: .csv or .svg",
-        [](const std::string& path) {
-            const std::string suffix = fs::path(path).extension().string();
-            if (suffix != ".csv" && suffix != ".svg")
-                throw UsageError("curves are written as .csv or .svg", path, "give one of these suffixes");
-        });
+    addValue(app, "--report-size", "WxH", size, parseImageSize, "pixels of the report's pictures (default 512x512)");
+    addOutputFile(app, "--curves", curves, "write distance, VWS and opacities over the moves: .csv or .svg",
+                  [](const std::string& path) {
+                      const std::string suffix = fs::path(path).extension().string();
+                      if (suffix != ".csv" && suffix != ".svg")
+                          throw UsageError("curves are written as .csv or .svg", path, "give one of these suffixes");
+                  });
 }
 
 void ReportOptions::check() const {

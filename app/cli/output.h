@@ -17,10 +17,10 @@ using Json = nlohmann::ordered_json; // keys in the order in which the documenta
 
 /// The whole result of a command. Nothing is printed before it is complete, so that stdout is empty after an error.
 struct Answer {
-    std::string text;                 ///< for people; ends with a newline
-    Json json;                        ///< the same for --json
-    std::vector<std::string> notices; ///< remarks for stderr
-    std::optional<Error> failure;     ///< the work is done but does not reach what was demanded: exit status 1
+    std::string text;                      ///< for people; ends with a newline
+    Json json;                             ///< the same for --json
+    std::vector<std::string> notices = {}; ///< remarks for stderr
+    std::optional<Error> failure = {};     ///< the work is done but does not reach what was demanded: exit status 1
 };
 
 /// Aligned columns: the first one to the left, the others to the right.

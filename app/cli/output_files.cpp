@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "base/file_watch.h"
 #include "output.h"
-#include "parse.h"
 
 namespace pellucid::cli {
 
@@ -128,16 +127,6 @@ CallFiles& callFiles() {
     return s_files;
 }
 
-void requireFolder(const std::string& path, const std::string& option) {
-    if (path.empty()) throw UsageError("the folder name is empty", option, "name the folder to write to");
-    std::error_code ec;
-    if (fs::is_directory(path, ec)) return;
-    const fs::path folder = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
-    if (fs::exists(fs::symlink_status(folder, ec))) // a link that leads nowhere too
-        throw FileError("a file has the folder's name", path, "choose another name");
-    requireWritable(folder.string());
-}
-
 } // namespace
 
 void watchCallFiles() {
@@ -159,29 +148,15 @@ void addOutputFile(const std::string& folder, const std::string& file, const std
     callFiles().addOutput(path, option);
 }
 
-CLI::Option* addOutputFile(CLI::App& app, const std::string& name, const std::string& valueName,
-                           const std::function<void(const std::string&)>& take, const std::string& help,
-                           const std::function<void(const std::string&)>& check) {
-    return addValue(
-        app, name, valueName,
-        [take, check](const std::string& path, const std::string& option) {
-            if (path.empty()) throw UsageError("the file name is empty", option, "name the file to write");
-            if (check) check(path);
-            addOutputFile(path, option);
-            take(path);
-        },
-        help);
-}
-
-CLI::Option* addOutputFolder(CLI::App& app, const std::string& name, const std::string& valueName,
-                             const std::function<void(const std::string&)>& take, const std::string& help) {
-    return addValue(
-        app, name, valueName,
-        [take](const std::string& path, const std::string& option) {
-            requireFolder(path, option);
-            take(path);
-        },
-        help);
+std::string parseOutputFolder(const std::string& path, const std::string& option) {
+    if (path.empty()) throw UsageError("the folder name is empty", option, "name the folder to write to");
+    std::error_code ec;
+    if (fs::is_directory(path, ec)) return path;
+    const fs::path folder = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
+    if (fs::exists(fs::symlink_status(folder, ec))) // a link that leads nowhere too
+        throw FileError("a file has the folder's name", path, "choose another name");
+    requireWritable(folder.string());
+    return path;
 }
 
 void writeCamera(const Camera& camera, const std::string& path) {

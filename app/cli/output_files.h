@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "parse.h"
 #include "render/camera.h"
 
 namespace pellucid::cli {
@@ -28,14 +29,30 @@ void addOutputFile(const std::string& path, const std::string& option);
 /// The same of a file in the folder of an addOutputFolder().
 void addOutputFile(const std::string& folder, const std::string& file, const std::string& option);
 
-/// Adds an option that names a file to be written, which `take` stores. It is announced when the command line is read;
-/// before that `check` may refuse the name, such as its suffix.
-CLI::Option* addOutputFile(CLI::App& app, const std::string& name, const std::string& valueName,
-                           const std::function<void(const std::string& path)>& take, const std::string& help,
-                           const std::function<void(const std::string& path)>& check = {});
+/// The name of a folder to write to. Throws UsageError and FileError where it cannot be one.
+std::string parseOutputFolder(const std::string& path, const std::string& option);
+
+/// Adds an option that names a file to be written, and stores the name in `target` (a string, maybe an optional one),
+/// which outlives the parsing. The file is announced when the command line is read; before that `check` may refuse the
+/// name, such as its suffix.
+template <class T>
+CLI::Option* addOutputFile(CLI::App& app, const std::string& name, T& target, const std::string& help,
+                           const std::function<void(const std::string& path)>& check = {}) {
+    return addValue(
+        app, name, "FILE", target,
+        [check](const std::string& path, const std::string& option) {
+            if (path.empty()) throw UsageError("the file name is empty", option, "name the file to write");
+            if (check) check(path);
+            addOutputFile(path, option);
+            return path;
+        },
+        help);
+}
 /// The same of a folder, which may be missing: its files are announced as soon as their names are known.
-CLI::Option* addOutputFolder(CLI::App& app, const std::string& name, const std::string& valueName,
-                             const std::function<void(const std::string& path)>& take, const std::string& help);
+template <class T>
+CLI::Option* addOutputFolder(CLI::App& app, const std::string& name, T& target, const std::string& help) {
+    return addValue(app, name, "DIR", target, parseOutputFolder, help);
+}
 
 /// *.camera.json. Throws FileError.
 void writeCamera(const Camera& camera, const std::string& path);

@@ -46,7 +46,7 @@ double parseReal(const std::string& text, const std::string& option) {
     throw UsageError(quoted(text) + " is not a number", option, "give a finite decimal number such as 2 or 0.5");
 }
 
-double parseReal(const std::string& text, const std::string& option, double lo, double hi) {
+double parseRealFrom(const std::string& text, const std::string& option, double lo, double hi) {
     const double value = parseReal(text, option);
     if (value >= lo && value <= hi) return value;
     throw UsageError(text + " is out of range", option, "give a number from " + plainText(lo) + " to " + plainText(hi));
@@ -96,14 +96,18 @@ std::vector<double> parseTargets(const std::string& text, const std::string& opt
     return targets;
 }
 
-std::size_t parseFeature(const std::string& text, const std::string& option, const TransferFunction& tf) {
-    std::string known;
-    for (std::size_t i = 0; i < tf.features.size(); ++i) {
-        if (tf.features[i].name == text) return i;
-        known += (known.empty() ? "'" : ", '") + tf.features[i].name + "'";
-    }
-    throw UsageError("no feature is named '" + text + "'", option,
+std::vector<std::size_t> parseFeatures(const std::string& text, const std::string& option, const TransferFunction& tf) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < tf.features.size(); ++i)
+        if (tf.features[i].name == text) found.push_back(i);
+    if (!found.empty()) return found;
+    const std::string known = joined(tf.features, ", ", [](const Feature& f) { return quoted(f.name); });
+    throw UsageError("no feature is named " + quoted(text), option,
                      known.empty() ? "leave it out: this transfer function has none" : "known: " + known);
+}
+
+std::size_t parseFeature(const std::string& text, const std::string& option, const TransferFunction& tf) {
+    return parseFeatures(text, option, tf).front();
 }
 
 ValueRange parseRange(const std::string& text, const std::string& option) {
@@ -150,7 +154,8 @@ namespace {
 ClipAxis parseClipAxis(const std::string& text, const std::string& option) {
     const auto parts = split(text, ':');
     if (parts.size() != 3) throw UsageError(quoted(text) + " is not a clipped axis", option, "give x:A:B");
-    const ClipAxis clip{parts[0][0] - 'x', parseReal(parts[1], option, 0, 1), parseReal(parts[2], option, 0, 1)};
+    const ClipAxis clip{parts[0][0] - 'x', parseRealFrom(parts[1], option, 0, 1),
+                        parseRealFrom(parts[2], option, 0, 1)};
     if (!(clip.lo < clip.hi)) throw UsageError("nothing is left between the ends of " + text, option, "give A < B");
     return clip;
 }
@@ -169,9 +174,8 @@ Clip parseClip(const std::string& text, const std::string& option) {
     return plane;
 }
 
-CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName,
-                      const std::function<void(const std::string&, const std::string&)>& take, const std::string& help,
-                      const std::string& group) {
+CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName, const Take& take,
+                      const std::string& help, const std::string& group) {
     const std::string option = names.substr(0, names.find(','));
     return app
         .add_option_function<std::string>(
@@ -180,8 +184,7 @@ CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string
         ->group(group);
 }
 
-CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::string& valueName,
-                         const std::function<void(const std::string&, const std::string&)>& take,
+CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::string& valueName, const Take& take,
                          const std::string& help, const std::string& group) {
     return app
         .add_option_function<std::vector<std::string>>(
@@ -193,6 +196,16 @@ CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::str
         ->type_name(valueName)
         ->allow_extra_args(false)
         ->group(group);
+}
+
+UsageError isRequired(const std::string& what, const std::string& command) {
+    const std::string program = "pellucid-cli " + command;
+    return {what + " is required", program, "see " + program + " --help"};
+}
+
+void refuse(std::initializer_list<Refusal> refusals) {
+    for (const Refusal& r : refusals)
+        if (r.applies) throw UsageError(r.what, r.option, r.whatToDo);
 }
 
 } // namespace pellucid::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <variant>
@@ -9,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/enum_names.h"
 #include "base/error.h"
 #include "render/clipping.h"
 #include "tf/transfer_function.h"
@@ -18,9 +20,10 @@ namespace pellucid::cli {
 
 /// The parts of `text` between separators, empty ones too: one at least.
 std::vector<std::string> split(const std::string& text, char separator);
-/// A finite decimal number in [lo, hi].
+/// A finite decimal number.
 double parseReal(const std::string& text, const std::string& option);
-double parseReal(const std::string& text, const std::string& option, double lo, double hi);
+/// The same, in [lo, hi].
+double parseRealFrom(const std::string& text, const std::string& option, double lo, double hi);
 /// The same, > lo.
 double parseRealAbove(const std::string& text, const std::string& option, double lo, double hi);
 /// A whole number in [lo, hi].
@@ -36,7 +39,9 @@ ValueRange parseRange(const std::string& text, const std::string& option);
 /// all 0.
 std::vector<double> parseTargets(const std::string& text, const std::string& option);
 
-/// The index of the feature of this name. Throws UsageError that lists all there are.
+/// The features of this name, ascending. Throws UsageError that lists all there are where it is none of them.
+std::vector<std::size_t> parseFeatures(const std::string& text, const std::string& option, const TransferFunction& tf);
+/// The first of them.
 std::size_t parseFeature(const std::string& text, const std::string& option, const TransferFunction& tf);
 
 struct ImageSize {
@@ -76,13 +81,64 @@ auto atOption(const std::string& option, const Parse& parse) {
     }
 }
 
-/// Adds an option with one value, which `take(text, option name)` checks and stores. A throw inside ends the parsing.
-CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName,
-                      const std::function<void(const std::string& text, const std::string& option)>& take,
+/// The value of this name.
+template <NamedEnum E>
+E parseName(const std::string& text, const std::string& option) {
+    return atOption(option, [&] { return fromName<E>(text); });
+}
+/// Any text, as it is.
+inline std::string anyText(const std::string& text, const std::string&) { return text; }
+
+/// The functions above for numbers within [lo, hi], as addValue() takes them.
+template <class T>
+auto wholeFrom(T lo, T hi) {
+    return [lo, hi](const std::string& text, const std::string& option) {
+        return static_cast<T>(parseInteger(text, option, static_cast<long long>(lo), static_cast<long long>(hi)));
+    };
+}
+inline auto realFrom(double lo, double hi) {
+    return [=](const std::string& text, const std::string& option) { return parseRealFrom(text, option, lo, hi); };
+}
+/// > lo.
+inline auto realAbove(double lo, double hi) {
+    return [=](const std::string& text, const std::string& option) { return parseRealAbove(text, option, lo, hi); };
+}
+
+/// What checks the text of an option and stores it. A throw inside ends the parsing.
+using Take = std::function<void(const std::string& text, const std::string& option)>;
+/// Adds an option with one value.
+CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName, const Take& take,
                       const std::string& help, const std::string& group = "Options");
 /// The same, may be given several times.
-CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::string& valueName,
-                         const std::function<void(const std::string& text, const std::string& option)>& take,
+CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::string& valueName, const Take& take,
                          const std::string& help, const std::string& group = "Options");
+
+/// The same two, which store what `parse(text, option name)` returns. `target` outlives the parsing.
+template <class T, class Parse>
+CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName, T& target,
+                      const Parse& parse, const std::string& help, const std::string& group = "Options") {
+    return addValue(
+        app, names, valueName,
+        [&target, parse](const std::string& text, const std::string& option) { target = parse(text, option); }, help,
+        group);
+}
+template <class T, class Parse>
+CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::string& valueName, std::vector<T>& target,
+                         const Parse& parse, const std::string& help, const std::string& group = "Options") {
+    return addRepeated(
+        app, names, valueName,
+        [&target, parse](const std::string& text, const std::string& option) { target.push_back(parse(text, option)); },
+        help, group);
+}
+
+/// What has to be given and is not: an option, an argument.
+UsageError isRequired(const std::string& what, const std::string& command);
+/// Options that do not go together, where it `applies`, and the words of the UsageError.
+struct Refusal {
+    bool applies;
+    const char *what, *option, *whatToDo;
+};
+/// Throws UsageError for the first that applies.
+void refuse(std::initializer_list<Refusal> refusals);
 
 } // namespace pellucid::cli

@@ -1,5 +1,7 @@
 #include "prepare.h"
 
+#include "base/round_numbers.h"
+
 namespace pellucid::cli {
 
 Prepared prepare(Workspace& workspace, const MeasureInput& input, Progress& progress) {
@@ -8,6 +10,12 @@ Prepared prepare(Workspace& workspace, const MeasureInput& input, Progress& prog
     workspace.weights(input, progress.phase("saliency"));
     prepared.saliencySeconds = workspace.seconds().saliency;
     return prepared;
+}
+
+std::function<void(const OptimizeState&)> movesTold(Progress& progress) {
+    return [&progress, moves = 0](const OptimizeState& state) mutable {
+        progress.tell(std::to_string(moves++) + " moves, distance " + plainText(state.objective));
+    };
 }
 
 } // namespace pellucid::cli

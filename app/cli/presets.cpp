@@ -16,7 +16,7 @@ Command addPresets(CLI::App& program) {
                     if (p.tf.range) one["range"] = {p.tf.range->lo, p.tf.range->hi};
                     list.push_back(std::move(one));
                 }
-                return Answer{listing(lines), {{"command", "presets"}, {"presets", list}}, {}, {}};
+                return Answer{listing(lines), {{"command", "presets"}, {"presets", list}}};
             }};
 }
 

@@ -119,16 +119,16 @@ Json jsonOf(const RayProbe& p, const Scene& scene, const Int3& pixel, const Imag
 
 Answer run(const Options& given, Progress& progress) {
     Options o = given;
-    if (!o.pixel && o.scene.session.file && o.scene.volume.path && looksLikePixel(*o.scene.volume.path))
+    if (!o.pixel && o.scene.sessionFile && o.scene.volume.path && looksLikePixel(*o.scene.volume.path))
         std::swap(o.pixel, o.scene.volume.path);
-    if (!o.pixel) throw UsageError("X,Y is required", "pellucid-cli probe", "see pellucid-cli probe --help");
+    if (!o.pixel) throw isRequired("X,Y", "probe");
     const ImageSize size = o.scene.picture.size;
     const Int3 pixel = parsePixel(*o.pixel, size);
     const Opened opened = resolve(o.scene, progress, {toView("probing")});
     const PictureInput picture = o.scene.picture.pictureOf(opened.scene);
     const RayProbe p = probe(*picture.volume, picture.tf, {picture.camera, picture.settings.clipping}, pixel.x + 0.5,
                              pixel.y + 0.5, size.width, size.height, picture.settings.onlyFeature);
-    return {textOf(p, opened.scene), jsonOf(p, opened.scene, pixel, size), opened.notices(), {}};
+    return {textOf(p, opened.scene), jsonOf(p, opened.scene, pixel, size), opened.notices()};
 }
 
 } // namespace
@@ -137,26 +137,13 @@ Command addProbe(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("probe", "What the ray of a pixel meets: intensities, opacity, each feature's share");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
-    o->scene.variables.add(*app);
+    o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     app->add_option_function<std::string>(
            "PIXEL", [o](const std::string& text) { o->pixel = text; },
            "X,Y: its column and row, from 0,0 at the top left of the picture")
         ->type_name("");
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.clip.add(*app);
-    addValue(
-        *app, "--size", "WxH",
-        [o](const std::string& text, const std::string& option) {
-            o->scene.picture.size = parseImageSize(text, option);
-        },
-        "pixels of the picture (default 512x512)");
-    addValue(
-        *app, "--feature", "NAME",
-        [o](const std::string& text, const std::string&) { o->scene.picture.feature = text; },
-        "of the picture of this feature alone");
+    addValue(*app, "--size", "WxH", o->scene.picture.size, parseImageSize, "pixels of the picture (default 512x512)");
+    addValue(*app, "--feature", "NAME", o->scene.picture.feature, anyText, "in the picture of this feature alone");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -43,6 +43,8 @@ JobControl Progress::phase(const std::string& name) {
     return job;
 }
 
+JobControl Progress::openPhase(const std::string& name) { return {phase(name).stop, {}}; }
+
 void Progress::show(double fraction) {
     const std::unique_lock lock(m_mutex, std::try_to_lock);
     if (!lock || !std::isfinite(fraction)) return; // another thread is drawing: this report is not needed

@@ -19,6 +19,8 @@ public:
 
     /// Starts a phase of the work ("saliency"); its JobControl stops on Ctrl-C. Throws Cancelled where that has come.
     JobControl phase(const std::string& name);
+    /// The same where nobody knows how much there is to do: without a bar.
+    JobControl openPhase(const std::string& name);
     /// News of a phase whose end cannot be foreseen, in place of its bar.
     void tell(const std::string& news);
     /// Removes the bar. Call it before anything else is written.

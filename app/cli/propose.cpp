@@ -77,7 +77,7 @@ Answer run(const Options& o, Progress& progress) {
     proposal.tf = sight.tf;
     const double seconds = looking.seconds();
     if (o.outTf) writeTf(proposal.tf, *o.outTf);
-    return {textOf(proposal, sight.shares, seconds), jsonOf(proposal, sight.shares, seconds), opened.notices(), {}};
+    return {textOf(proposal, sight.shares, seconds), jsonOf(proposal, sight.shares, seconds), opened.notices()};
 }
 
 } // namespace
@@ -85,12 +85,8 @@ Answer run(const Options& o, Progress& progress) {
 Command addPropose(CLI::App& program) {
     CLI::App* app = program.add_subcommand("propose", "A transfer function from what the data hold, and why");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app);
-    o->scene.variables.add(*app);
-    o->scene.session.add(*app);
-    addOutputFile(
-        *app, "--out-tf", "FILE", [o](const std::string& path) { o->outTf = path; },
-        "write the proposed transfer function");
+    o->scene.addForData(*app);
+    addOutputFile(*app, "--out-tf", o->outTf, "write the proposed transfer function");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

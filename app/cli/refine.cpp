@@ -49,9 +49,8 @@ void fixPoint(TransferFunction& tf, double x) {
     for (ControlPoint& p : tf.points)
         if (std::abs(p.x - x) <= nearest) p.fixed = found = true;
     if (found) return;
-    std::string known;
-    for (const ControlPoint& p : tf.points) known += (known.empty() ? "" : " ") + plainText(p.x);
-    throw UsageError("no control point is at intensity " + plainText(x), "--fix", "known: " + known);
+    throw UsageError("no control point is at intensity " + plainText(x), "--fix",
+                     "known: " + joined(tf.points, " ", [](const ControlPoint& p) { return plainText(p.x); }));
 }
 
 PixelRectangle parseRectangle(const std::string& text, const std::string& option) {
@@ -193,23 +192,17 @@ std::string textOf(const RefineOptions& options, const TransferFunction& before,
     return text + points.text();
 }
 
-/// Without the priority.
-RefineOptions optionsOf(const Options& o, const RefineSettings& session) {
-    RefineOptions options = session.options();
-    o.steps.applyTo(options);
-    return options;
-}
-
 Answer run(const Options& o, Progress& progress) {
     check(o);
-    const bool hasSession = o.scene.session.file.has_value(); // which may bring a region
+    const bool hasSession = o.scene.sessionFile.has_value(); // which may bring a region
     if (!hasSession) checkPicture(o, o.region.has_value());
     const Opened opened = resolve(o.scene, progress, {o.region || hasSession ? toView("drawing") : MemoryUse{}});
     checkPicture(o, regionOf(o, opened.scene.session).has_value());
     TransferFunction tf = opened.scene.tf;
     for (const double x : o.fixed) fixPoint(tf, x);
     Json priority;
-    RefineOptions options = optionsOf(o, *opened.scene.session.refine);
+    RefineOptions options = opened.scene.session.refine->options();
+    o.steps.applyTo(options);
     options.priority = priorityOf(o, opened.scene, tf, progress, priority);
     const Histogram histogram = makeHistogram(*opened.scene.volume);
     const JobControl job = progress.phase("refining");
@@ -217,40 +210,34 @@ Answer run(const Options& o, Progress& progress) {
     const Scene& scene = opened.scene;
     const RefineResult result = refineAsDrawn(histogram, tf, *scene.volume, scene.colors.get(), options, job);
     const double seconds = refining.seconds();
-    const RefineComparison comparison = compareMethods(
-        histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()),
-        options, job);
+    const TransferFunction drawn =
+        options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get());
+    const RefineComparison comparison = compareMethods(histogram, drawn, options, job);
     Remarks remarks;
     const RefineAgain again = [&](const RefineOptions& by) {
         return refineAsDrawn(histogram, tf, *scene.volume, scene.colors.get(), by, job).tf;
     };
-    remarks.outcome = priorityOutcome(
-        histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()),
-        result.tf, options, again);
+    remarks.outcome = priorityOutcome(histogram, drawn, result.tf, options, again);
     const MeasureInput seen = measureInput(scene);
     const RayBundle rays(*scene.volume, tf, seen.view, kCoverageRays, progress.phase("coverage"));
     remarks.dark = darkeningOf(rays, histogram, tf, result.tf, options, again);
     if (o.outTf) writeTf(result.tf, *o.outTf);
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
     addRemarks(json, remarks.outcome, remarks.dark);
-    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    return {textOf(options, tf, result, comparison, priority, remarks, seconds), std::move(json), opened.notices(), {}};
+    addMapping(json, scene);
+    return {textOf(options, tf, result, comparison, priority, remarks, seconds), std::move(json), opened.notices()};
 }
 
 void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {
-    addValue(
-        app, "--intensity", "X",
-        [o](const std::string& text, const std::string& option) { o->intensity = parseReal(text, option, 0, 1); },
-        "prioritize what is near this intensity, from 0 to 1 (the ends of the range)");
-    addValue(
-        app, "--hue", "DEG",
-        [o](const std::string& text, const std::string& option) { o->hue = parseReal(text, option); },
-        "prioritize the intensity whose colour is nearest in hue, in degrees: a click on the palette");
+    addValue(app, "--intensity", "X", o->intensity, realFrom(0, 1),
+             "prioritize what is near this intensity, from 0 to 1 (the ends of the range)");
+    addValue(app, "--hue", "DEG", o->hue, parseReal,
+             "prioritize the intensity whose colour is nearest in hue, in degrees: a click on the palette");
     addValue(
         app, "--region", "X0,Y0,X1,Y1|X0:X1,Y0:Y1,Z0:Z1",
         [o](const std::string& text, const std::string& option) {
             if (text.find(':') != std::string::npos)
-                o->scene.volume.takeRegion(text, option);
+                o->scene.volume.region = parseVoxelRegion(text, option);
             else
                 o->region = parseRectangle(text, option);
         },
@@ -262,7 +249,7 @@ void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {
             if (text.find('x') != std::string::npos)
                 o->size = parseImageSize(text, option);
             else
-                o->scene.volume.takeSampleSize(text, option);
+                o->scene.volume.sampleSize = parseSampleSize(text, option);
         },
         "WxH: pixels of the picture that --region is of (default 512x512); N: as --sample-size");
 }
@@ -272,12 +259,7 @@ void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {
 Command addRefine(CLI::App& program) {
     CLI::App* app = program.add_subcommand("refine", "Evens out the information along the transfer function (entropy)");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app, VolumeOptions::SizeIs::Both);
-    o->scene.variables.add(*app);
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.clip.add(*app);
+    o->scene.addForView(*app, VolumeOptions::SizeIs::Both);
     addPriority(*app, o);
     o->steps.add(*app);
     addRepeated(
@@ -290,9 +272,7 @@ Command addRefine(CLI::App& program) {
             }
         },
         "leave the control point at this intensity (0 to 1) as it is");
-    addOutputFile(
-        *app, "--out-tf", "FILE", [o](const std::string& path) { o->outTf = path; },
-        "write the refined transfer function");
+    addOutputFile(*app, "--out-tf", o->outTf, "write the refined transfer function");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

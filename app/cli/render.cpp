@@ -1,9 +1,7 @@
 // `render`: the picture of a volume as a file.
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
-#include <sstream>
 
+#include "base/text.h"
 #include "commands.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
@@ -23,57 +21,47 @@ struct Options {
     SceneOptions scene;
     SliceOptions slice;
     std::string out;
-    FrameOfReference annotate = FrameOfReference::none();
+    AnnotationChoice annotate = AnnotationChoice::none();
 };
 
 /// "cube,scale" or "all".
-FrameOfReference parseParts(const std::string& text, const std::string& option) {
-    FrameOfReference show = FrameOfReference::none();
-    std::istringstream words(text);
-    bool known = !text.empty() && text.back() != ',';
-    for (std::string word; known && std::getline(words, word, ',');) {
-        known = word == "all";
-        for (const FramePartInfo& part : kFrameParts)
+AnnotationChoice parseParts(const std::string& text, const std::string& option) {
+    AnnotationChoice show = AnnotationChoice::none();
+    for (const std::string& word : split(text, ',')) {
+        bool known = false;
+        for (const AnnotationPartInfo& part : kAnnotationParts)
             if (word == part.name || word == "all") known = show.*part.shown = true;
+        if (!known)
+            throw UsageError("'" + text + "' does not name annotations", option,
+                             "give all, or some of cube, letters, axes, scale, legend, title with commas between");
     }
-    if (!known)
-        throw UsageError("'" + text + "' does not name parts of the frame of reference", option,
-                         "give all, or some of cube, letters, axes, scale, legend, title with commas between");
     return show;
 }
 
 bool isJpeg(const std::string& path) {
-    std::string suffix = std::filesystem::path(path).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string suffix = lowerCase(std::filesystem::path(path).extension().string());
     return suffix == ".jpg" || suffix == ".jpeg";
 }
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
-    if (o.scene.picture.transparent && isJpeg(o.out))
-        throw UsageError("a JPEG file cannot be transparent", "--background transparent",
-                         "write a PNG, TIFF or EXR file");
-    o.slice.check();
-    if (o.slice.at && o.annotate.any())
-        throw UsageError("a slice is drawn without a frame of reference", "--annotate", "leave it out");
-    const bool field = o.scene.field.isGiven();
-    if (o.slice.at && o.scene.picture.feature && !field)
-        throw UsageError("a slice always shows all features", "--feature", "leave it out");
+    const bool slice = o.slice.at.has_value(), field = o.scene.drawsField();
+    const bool mode = o.scene.picture.given.has("mode"), ground = o.scene.ground.path.has_value();
     const char* const ofData = o.slice.window                     ? "--window"
                                : o.slice.given.has("tf_strength") ? "--tf-strength"
                                                                   : nullptr;
-    if (field && ofData != nullptr)
-        throw UsageError("a field does not use the colours of the transfer function", ofData,
-                         "use --field-top or --field-colormap");
-    if (field && o.scene.picture.given.has("mode"))
-        throw UsageError("a field is always drawn by emission and absorption", "--mode", "leave it out");
-    if (o.slice.at && o.scene.ground.path)
-        throw UsageError("a slice is drawn without the ground", "--ground", "leave it out");
-    if (field && o.scene.ground.path)
-        throw UsageError("a field is drawn without the ground", "--ground", "leave it out");
-    if (o.slice.at && o.scene.picture.given.has("mode"))
-        throw UsageError("a slice has no rays, so it has no mode", "--mode", "leave it out");
+    refuse({{o.scene.picture.transparent && isJpeg(o.out), "a JPEG file cannot be transparent",
+             "--background transparent", "write a PNG, TIFF or EXR file"}});
+    o.slice.check();
+    refuse(
+        {{slice && o.annotate.any(), "a slice is drawn without annotations", "--annotate", "leave it out"},
+         {slice && o.scene.picture.feature && !field, "a slice always shows all features", "--feature", "leave it out"},
+         {field && ofData != nullptr, "a field does not use the colours of the transfer function", ofData,
+          "use --field-top or --field-colormap"},
+         {field && mode, "a field is always drawn by emission and absorption", "--mode", "leave it out"},
+         {slice && ground, "a slice is drawn without the ground", "--ground", "leave it out"},
+         {field && ground, "a field is drawn without the ground", "--ground", "leave it out"},
+         {slice && mode, "a slice has no rays, so it has no mode", "--mode", "leave it out"}});
 }
 
 /// What shows where the picture is transparent.
@@ -97,14 +85,12 @@ void paintBackground(Image& image, const RenderSettings& settings) {
 /// The field that the session and the options want drawn; empty: the data. A session's is of views, not of slices.
 std::optional<Field> fieldOf(const Options& o, const Scene& scene, Progress& progress) {
     const FieldView& view = *scene.session.field;
-    if (!view.kind || (o.slice.at && !o.scene.field.isGiven())) return {};
+    if (!view.kind || (o.slice.at && !o.scene.drawsField())) return {};
     Workspace workspace;
     const MeasureInput input = measureInput(scene);
-    if (dependsOnView(*view.kind)) {
-        prepare(workspace, input, progress);
-        return workspace.field(input, *view.kind, scene.fieldFeature(), progress.phase("field"));
-    }
-    return workspace.field(input, *view.kind, scene.fieldFeature(), progress.phase("saliency"));
+    const bool ofView = dependsOnView(*view.kind);
+    if (ofView) prepare(workspace, input, progress);
+    return workspace.field(input, *view.kind, scene.fieldFeature(), progress.phase(ofView ? "field" : "saliency"));
 }
 
 Json jsonFromField(const Scene& scene, const Field& field) {
@@ -116,71 +102,51 @@ Json jsonFromField(const Scene& scene, const Field& field) {
     return json;
 }
 
-Answer drawSlice(const Options& o, const Opened& opened, const PictureInput& picture, const Stopwatch& total,
-                 Progress& progress) {
+/// A picture, and what is said of it.
+struct Drawn {
+    Image image;
+    double seconds = 0;
+    std::string engine = {}; ///< its name; empty: no engine has drawn it
+    Json slice = nullptr;    ///< where it lies; null: it is none
+};
+
+Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& picture) {
     const Geometry& g = picture.volume->geometry();
     const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
-    SliceSettings settings = o.slice.settingsOf(opened.scene);
+    SliceSettings settings = o.slice.settingsOf(scene);
     settings.clipping = picture.settings.clipping;
     settings.colors = picture.settings.colors;
-    if (o.scene.field.isGiven()) {
+    if (o.scene.drawsField()) {
         settings.tfStrength = 1;
         settings.window = picture.volume->range();
     }
     const Stopwatch drawing;
-    Image image = renderSlice(*picture.volume, picture.tf, plane, settings);
-    paintBackground(image, picture.settings);
-    const double renderSeconds = drawing.seconds();
-    progress.phase("writing");
-    writeImage(image, o.out);
-    Json json{{"command", "render"},
-              {"volume", jsonFromVolume(*opened.scene.volume)},
-              {"file", o.out},
-              {"size", {image.width, image.height}},
-              {"slice",
-               {{"axis", std::string(1, "xyz"[plane.axis])},
-                {"name", sliceName(g, plane.axis)},
-                {"position", o.slice.at->fraction},
-                {"voxel", plane.position},
-                {"window", jsonFromRange(settings.window)},
-                {"tf_strength", settings.tfStrength}}},
-              {"seconds", {{"render", renderSeconds}, {"total", total.seconds()}}}};
-    return {"wrote " + o.out + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                " pixels, slice " + sliceName(g, plane.axis) + ", " + secondsText(renderSeconds) + "\n",
-            std::move(json),
-            opened.notices(),
-            {}};
+    Drawn drawn{renderSlice(*picture.volume, picture.tf, plane, settings)};
+    paintBackground(drawn.image, picture.settings);
+    drawn.seconds = drawing.seconds();
+    drawn.slice = {{"axis", std::string(1, "xyz"[plane.axis])}, {"name", sliceName(g, plane.axis)},
+                   {"position", o.slice.at->fraction},          {"voxel", plane.position},
+                   {"window", jsonFromRange(settings.window)},  {"tf_strength", settings.tfStrength}};
+    return drawn;
 }
 
-Answer drawView(const Options& o, const Opened& opened, const PictureInput& picture, const std::optional<Field>& field,
-                const Stopwatch& total, Progress& progress) {
-    const auto renderer = makeRenderer(opened.scene.session.measure->engine, picture.volume);
+Drawn drawView(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
+               Progress& progress) {
+    const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
-    Image image = renderer->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
-    const double renderSeconds = drawing.seconds();
+    Drawn drawn{renderer->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"))};
+    drawn.seconds = drawing.seconds();
+    drawn.engine = renderer->name();
     if (o.annotate.any())
-        drawMarks(image, annotationMarks(field ? fieldAnnotationInput(picture, opened.scene, *field, o.annotate)
-                                               : annotationInput(picture, o.annotate)));
-    progress.phase("writing");
-    writeImage(image, o.out);
-
-    Json json{{"command", "render"},
-              {"engine", renderer->name()},
-              {"volume", jsonFromVolume(*opened.scene.volume)},
-              {"file", o.out},
-              {"size", {image.width, image.height}},
-              {"seconds", {{"render", renderSeconds}, {"total", total.seconds()}}}};
-    return {"wrote " + o.out + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                " pixels, engine " + renderer->name() + ", " + secondsText(renderSeconds) + "\n",
-            std::move(json),
-            opened.notices(),
-            {}};
+        drawMarks(drawn.image, annotationMarks(field ? fieldAnnotationInput(picture, scene, *field, o.annotate)
+                                                     : annotationInput(picture, o.annotate)));
+    return drawn;
 }
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     check(o);
-    const bool field = o.scene.field.isGiven();
+    const bool field = o.scene.drawsField();
     const Opened opened = resolve(o.scene, progress, {field ? toMeasureAndDrawField() : toView("drawing"), field});
     const Scene& scene = opened.scene;
     PictureInput picture = o.scene.picture.pictureOf(scene);
@@ -191,11 +157,25 @@ Answer run(const Options& o, Progress& progress) {
         o.scene.picture.applyTo(picture);
         if (o.slice.at) picture.tf = fieldSliceTf(picture.tf);
     }
-    Answer answer = o.slice.at ? drawSlice(o, opened, picture, total, progress)
-                               : drawView(o, opened, picture, shown, total, progress);
-    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) answer.json["hsb"] = std::move(mapping);
-    if (shown) answer.json["field"] = jsonFromField(scene, *shown);
-    return answer;
+    Drawn drawn = o.slice.at ? drawSlice(o, scene, picture) : drawView(o, scene, picture, shown, progress);
+    progress.phase("writing");
+    writeImage(drawn.image, o.out);
+
+    const auto [width, height] = std::pair(drawn.image.width, drawn.image.height);
+    const std::string how =
+        drawn.slice.is_null() ? "engine " + drawn.engine : "slice " + drawn.slice["name"].get<std::string>();
+    Json json{{"command", "render"}};
+    if (!drawn.engine.empty()) json["engine"] = drawn.engine;
+    json["volume"] = jsonFromVolume(*scene.volume);
+    json["file"] = o.out;
+    json["size"] = {width, height};
+    if (!drawn.slice.is_null()) json["slice"] = std::move(drawn.slice);
+    json["seconds"] = {{"render", drawn.seconds}, {"total", total.seconds()}};
+    addMapping(json, scene);
+    if (shown) json["field"] = jsonFromField(scene, *shown);
+    return {"wrote " + o.out + ": " + std::to_string(width) + " x " + std::to_string(height) + " pixels, " + how +
+                ", " + secondsText(drawn.seconds) + "\n",
+            std::move(json), opened.notices()};
 }
 
 } // namespace
@@ -203,27 +183,18 @@ Answer run(const Options& o, Progress& progress) {
 Command addRender(CLI::App& program) {
     CLI::App* app = program.add_subcommand("render", "Writes the picture of a volume");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
-    o->scene.variables.add(*app);
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.clip.add(*app);
+    o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     o->scene.engine.add(*app);
-    addOutputFile(
-        *app, "--out", "FILE", [o](const std::string& path) { o->out = path; },
-        "the picture to write: .png, .tif, .exr or .jpg", checkImageSuffix)
+    addOutputFile(*app, "--out", o->out, "the picture to write: .png, .tif, .exr or .jpg", checkImageSuffix)
         ->required();
     o->scene.picture.add(*app);
     o->scene.ground.add(*app);
     o->slice.add(*app);
-    o->scene.field.add(*app);
+    o->scene.field.add(*app, "Field");
     o->scene.saliency.add(*app);
-    addValue(
-        *app, "--annotate", "PARTS",
-        [o](const std::string& text, const std::string& option) { o->annotate = parseParts(text, option); },
-        "draw the frame of reference over the picture: all, or some of cube, letters, axes, scale, legend, title with "
-        "commas between");
+    addValue(*app, "--annotate", "PARTS", o->annotate, parseParts,
+             "draw annotations over the picture: all, or some of cube, letters, axes, scale, legend, title with "
+             "commas between");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -3,23 +3,42 @@
 #include "output_files.h"
 #include "render/memory_needs.h"
 #include "session/scene_data.h"
+#include "session/session_json.h"
 
 namespace pellucid::cli {
 
-void SceneOptions::addForFigures(CLI::App& app, VolumeOptions::SizeIs size) {
+void SceneOptions::addSession(CLI::App& app) {
+    addValue(
+        app, "--session", "FILE",
+        [this](const std::string& text, const std::string& option) {
+            if (text.empty()) throw UsageError("the file name is empty", option, "name a session, *.pellucid.json");
+            sessionFile = text;
+        },
+        "everything as in this saved session; VOLUME and options override it", "Volume");
+}
+
+void SceneOptions::addForData(CLI::App& app, VolumeOptions::SizeIs size) {
     volume.add(app, size);
     variables.add(app);
-    session.add(app);
+    addSession(app);
+}
+
+void SceneOptions::addForView(CLI::App& app, VolumeOptions::SizeIs size) {
+    addForData(app, size);
     tf.add(app);
     camera.add(app);
     clip.add(app);
+}
+
+void SceneOptions::addForFigures(CLI::App& app, VolumeOptions::SizeIs size) {
+    addForView(app, size);
     engine.add(app);
     saliency.add(app);
     engine.addProfile(app);
 }
 
 SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<std::string>& notices) {
-    SessionFile file = options.session.read();
+    SessionFile file = options.sessionFile ? readSession(*options.sessionFile) : SessionFile{};
     notices.insert(notices.end(), file.notices.begin(), file.notices.end());
     SceneInputs inputs;
     inputs.session = std::move(file.session);
@@ -32,7 +51,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
     options.ground.applyTo(inputs);
-    options.field.applyTo(inputs);
+    inputs.session.field.edit([&](FieldView& view) { options.field.applyTo(view); });
     options.engine.requireProfile(inputs, options.saliency);
     inputs.then = work.use;
     if (work.byEngine) {

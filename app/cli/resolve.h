@@ -7,11 +7,9 @@
 #include "options/camera_options.h"
 #include "options/clip_options.h"
 #include "options/engine_options.h"
-#include "options/field_options.h"
 #include "options/ground_options.h"
 #include "options/picture_options.h"
 #include "options/saliency_options.h"
-#include "options/session_options.h"
 #include "options/tf_options.h"
 #include "options/variable_options.h"
 #include "options/volume_options.h"
@@ -21,7 +19,7 @@ namespace pellucid::cli {
 
 /// What is worked on, and how. A command adds the groups that it takes; those that it does not add change nothing.
 struct SceneOptions {
-    SessionOptions session;
+    std::optional<std::string> sessionFile; ///< --session: all that is not said otherwise is as saved there
     VolumeOptions volume;
     VariableOptions variables;
     TfOptions tf;
@@ -31,9 +29,15 @@ struct SceneOptions {
     SaliencyInput saliency;
     PictureOptions picture;
     GroundOptions ground;
-    FieldOptions field;
+    SettingOptions<FieldView> field; ///< --field and the options of its look: a field in the place of the data
 
-    /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.
+    bool drawsField() const { return field.values().kind.has_value(); }
+
+    void addSession(CLI::App& app); ///< --session
+    /// The groups that commands share: those of the data, of what is looked at and from where, and of all that figures
+    /// of a view depend on. Each begins with the one before.
+    void addForData(CLI::App& app, VolumeOptions::SizeIs size = VolumeOptions::SizeIs::Sample);
+    void addForView(CLI::App& app, VolumeOptions::SizeIs size = VolumeOptions::SizeIs::Sample);
     void addForFigures(CLI::App& app, VolumeOptions::SizeIs size = VolumeOptions::SizeIs::Sample);
 };
 

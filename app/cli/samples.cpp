@@ -16,7 +16,7 @@ Command addSamples(CLI::App& program) {
                                     {"dims", jsonFromDims(s.defaultDims)},
                                     {"frames", s.frames}});
                 }
-                return Answer{listing(lines), {{"command", "samples"}, {"samples", list}}, {}, {}};
+                return Answer{listing(lines), {{"command", "samples"}, {"samples", list}}};
             }};
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <future>
 #include <map>
+#include <thread>
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
@@ -18,6 +18,7 @@
 #include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
+#include "prepare.h"
 #include "render/memory_needs.h"
 #include "report/image_plot.h"
 #include "report/svg_plot.h"
@@ -74,39 +75,33 @@ void announceFrames(const Options& o, int from, int size) {
 /// What can be told before the volume is read.
 void check(const Options& o) {
     for (const char* name : kCurves) addOutputFile(o.out, name, "--out");
-    if (o.scene.picture.transparent)
-        throw UsageError("flicker cannot be measured on a transparent background", "--background transparent",
-                         "give a colour");
-    if (o.framesPerSecond && !o.movie)
-        throw UsageError("--fps needs --mp4", "--fps", "add --mp4 FILE, or leave out --fps");
-    if (!o.movie) return;
-    if (o.noPictures) throw UsageError("--mp4 needs the pictures", "--no-pictures", "leave out one of the two");
-    requireMovieWriter();
+    refuse({{o.scene.picture.transparent, "flicker cannot be measured on a transparent background",
+             "--background transparent", "give a colour"},
+            {o.framesPerSecond && !o.movie, "--fps needs --mp4", "--fps", "add --mp4 FILE, or leave out --fps"},
+            {o.movie && o.noPictures, "--mp4 needs the pictures", "--no-pictures", "leave out one of the two"}});
+    if (o.movie) requireMovieWriter();
 }
 
 /// The frame that is read while others are computed.
 class ReadAhead {
 public:
     ReadAhead(std::shared_ptr<TimeSeries> series, ValueRange window) : m_series(std::move(series)), m_window(window) {}
-    ~ReadAhead() { m_stop.request_stop(); } // the future waits
 
     void begin(int frame) {
         if (frame < 0 || frame >= m_series->size() || m_series->roomFor() < 2) return;
-        if (m_reading.valid()) m_reading.wait();
-        m_reading =
-            std::async(std::launch::async, [series = m_series, window = m_window, stop = m_stop.get_token(), frame] {
-                try {
-                    series->show(frame, window, {stop, {}});
-                } catch (...) { // whoever needs the frame meets the same error
-                }
-            });
+        if (m_reading.joinable()) m_reading.join();
+        m_reading = std::jthread([series = m_series, window = m_window, frame](const std::stop_token& stop) {
+            try {
+                series->show(frame, window, {stop, {}});
+            } catch (...) { // whoever needs the frame meets the same error
+            }
+        });
     }
 
 private:
     std::shared_ptr<TimeSeries> m_series;
     ValueRange m_window;
-    std::stop_source m_stop;
-    std::future<void> m_reading;
+    std::jthread m_reading; ///< stopped when this goes
 };
 
 /// One frame on its way.
@@ -130,6 +125,7 @@ private:
     void prepareKey();
     void plan(ReadAhead& ahead);
     std::optional<Frame> next(int number);
+    Json jsonOf(const Frame& frame) const;
     void finish(std::vector<Frame>& batch);
     void tellMissed(const SequenceFigures& figures);
     TemporalCurves curves() const;
@@ -171,21 +167,16 @@ void Sequence::prepareKey() {
         // A number for a feature that is empty here is for later frames; words say nothing of it.
         const TransferFunction named = m_o.targets->numbers.empty() ? m_scene.wantedTf() : m_scene.tf;
         session.goals.set(withTargets(*session.goals, named, targets));
-        JobControl job = m_progress.phase("optimizing");
-        job.progress = nullptr;
-        int moves = -1;
         const OptimizeResult result = m_maker.workspace().optimize(
             measureInput(m_scene), shownShares(m_scene.wantedTf(), targets), limitsOf(m_scene.tf, *session.goals),
-            *session.optimize, job, [&](const OptimizeState& state) {
-                m_progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
-            });
+            *session.optimize, m_progress.openPhase("optimizing"), movesTold(m_progress));
         if (result.reason == StopReason::Cancelled) throw Cancelled{};
         m_scene.tf = withShownOpacities(m_scene.tf, result.history[result.best].opacity);
         if (const std::string kept = keptText(result); !kept.empty())
             m_notices.push_back("frame " + std::to_string(m_start) + ": " + kept);
     }
     m_fixed = m_scene.tf;
-    session = beginningHere(std::move(session), m_fixed, m_o.scene.session.file.value_or("the session"));
+    session = beginningHere(std::move(session), m_fixed, m_o.scene.sessionFile.value_or("the session"));
     m_keySeconds = watch.seconds();
 }
 
@@ -253,6 +244,24 @@ std::optional<Frame> Sequence::next(int number) {
     }
 }
 
+Json Sequence::jsonOf(const Frame& frame) const {
+    const FrameFigures& f = frame.figures;
+    Json json{{"frame", f.frame},           {"time", f.time},       {"vws", f.vws},
+              {"visibility", f.visibility}, {"opacity", f.opacity}, {"target", f.targets},
+              {"empty", f.empty},           {"file", f.file},       {"objective", f.objective}};
+    if (f.flicker) json["flicker"] = *f.flicker;
+    if (f.moves) {
+        json["moves"] = *f.moves;
+        json["seconds"] = f.seconds;
+    }
+    if (m_o.compare)
+        json["static"] = {{"vws", frame.staticFigures.vws},
+                          {"visibility", frame.staticFigures.visibility},
+                          {"objective", frame.staticFigures.objective}};
+    json["tf"] = Json(jsonFromTf(frame.scene.tf));
+    return json;
+}
+
 /// Figures and pictures of frames, side by side.
 void Sequence::finish(std::vector<Frame>& batch) {
     const JobControl job{interruptToken(), {}};
@@ -269,34 +278,19 @@ void Sequence::finish(std::vector<Frame>& batch) {
             if (frame.before) frame.staticFigures.flicker = 0; // the same transfer function
         }
         writeTf(frame.scene.tf, fileOf(m_o, frame.number, kTfSuffix));
+        const auto draw = [&](const Scene& scene, const char* suffix) {
+            const PictureInput picture = m_o.scene.picture.pictureOf(scene);
+            const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
+            writeImage(renderer->render(picture.camera, picture.tf, picture.settings, job),
+                       fileOf(m_o, frame.number, suffix));
+        };
         if (m_o.noPictures) return;
-        const PictureInput picture = m_o.scene.picture.pictureOf(frame.scene);
-        const Image image = makeRenderer(frame.scene.session.measure->engine, picture.volume)
-                                ->render(picture.camera, picture.tf, picture.settings, job);
-        writeImage(image, fileOf(m_o, frame.number, kPictureSuffix));
-        if (!m_o.compare) return;
-        const PictureInput still = m_o.scene.picture.pictureOf(frame.asStatic);
-        writeImage(makeRenderer(frame.scene.session.measure->engine, still.volume)
-                       ->render(still.camera, still.tf, still.settings, job),
-                   fileOf(m_o, frame.number, kStaticSuffix));
+        draw(frame.scene, kPictureSuffix);
+        if (m_o.compare) draw(frame.asStatic, kStaticSuffix);
     });
-    for (Frame& frame : batch) {
-        const FrameFigures& f = frame.figures;
-        Json one{{"frame", f.frame},           {"time", f.time},       {"vws", f.vws},
-                 {"visibility", f.visibility}, {"opacity", f.opacity}, {"target", f.targets},
-                 {"empty", f.empty},           {"file", f.file},       {"objective", f.objective}};
-        if (f.flicker) one["flicker"] = *f.flicker;
-        if (f.moves) {
-            one["moves"] = *f.moves;
-            one["seconds"] = f.seconds;
-        }
-        if (m_o.compare)
-            one["static"] = {{"vws", frame.staticFigures.vws},
-                             {"visibility", frame.staticFigures.visibility},
-                             {"objective", frame.staticFigures.objective}};
-        one["tf"] = Json::parse(jsonFromTf(frame.scene.tf).dump());
-        m_frames.push_back(std::move(one));
-        m_figures.push_back(f);
+    for (const Frame& frame : batch) {
+        m_frames.push_back(jsonOf(frame));
+        m_figures.push_back(frame.figures);
         if (m_o.compare) m_static.push_back(frame.staticFigures);
         if (!m_o.noPictures) m_pictures.push_back(fileOf(m_o, frame.number, kPictureSuffix));
     }
@@ -381,13 +375,11 @@ Json jsonFromFigures(const SequenceFigures& f) {
 Json Sequence::json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const {
     Json json{{"command", "sequence"}, {"mode", name(settings().mode)}};
     if (settings().mode != Mode::Static) {
-        if (std::isinf(settings().usedCoherence()))
-            json["coherence"] = "infinite";
-        else
-            json["coherence"] = settings().usedCoherence();
+        const double coherence = settings().usedCoherence();
+        json["coherence"] = std::isinf(coherence) ? Json("infinite") : Json(coherence);
     }
     json["volume"] = jsonFromVolume(*m_scene.volume);
-    if (Json mapping = jsonFromMapping(m_scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
+    addMapping(json, m_scene);
     json["from"] = m_start;
     json["frames"] = m_frames;
     json["broken"] = Json::array();
@@ -451,7 +443,7 @@ Answer Sequence::run(const Opened& opened) {
     std::optional<SequenceFigures> asStatic;
     if (m_o.compare) asStatic = summaryOf(m_static, tolerance);
     tellMissed(dynamic);
-    Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices(), {}};
+    Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices()};
     answer.notices.insert(answer.notices.end(), m_notices.begin(), m_notices.end());
     answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
     if (m_o.requireConverged && dynamic.above > 0)
@@ -464,9 +456,8 @@ Answer Sequence::run(const Opened& opened) {
 
 Answer run(const Options& o, Progress& progress) {
     check(o);
-    const bool optimizes = o.adapt.values().mode == Mode::Optimize;
-    if (optimizes && !o.targets && !o.scene.session.file)
-        throw UsageError("--target is required", "pellucid-cli sequence", "see pellucid-cli sequence --help");
+    if (o.adapt.values().mode == Mode::Optimize && !o.targets && !o.scene.sessionFile)
+        throw isRequired("--target", "sequence");
     Opened opened;
     SceneInputs inputs = inputsOf(o.scene, {toMeasureAndDrawField(), true}, opened.sessionNotices);
     if (o.from || !inputs.frame) inputs.frame = o.from.value_or(0); // wherever the session was left
@@ -486,34 +477,21 @@ Command addSequence(CLI::App& program) {
     o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
     o->adapt.add(*app);
     addValue(
-        *app, "--target", kTargetForms,
-        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        *app, "--target", kTargetForms, o->targets, TargetInput::parse,
         "shares of attention, as in optimize; the first frame's transfer function is optimized to them, in every mode");
     o->search.add(*app, "Options", {"tolerance", "exact_shares"});
-    addValue(
-        *app, "--from", "FRAME",
-        [o](const std::string& text, const std::string& option) {
-            o->from = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
-        },
-        "begin with this frame of the series (default 0)");
+    addValue(*app, "--from", "FRAME", o->from, wholeFrom(0, 1'000'000'000),
+             "begin with this frame of the series (default 0)");
     app->add_flag("--compare", o->compare,
                   "also measure and draw every frame under the transfer function of the first one");
-    addOutputFolder(
-        *app, "--out", "DIR", [o](const std::string& path) { o->out = path; },
-        "write frame_0000.png and frame_0000.tf.json of each frame, curves.csv, curves.svg and curves.png")
+    addOutputFolder(*app, "--out", o->out,
+                    "write frame_0000.png and frame_0000.tf.json of each frame, curves.csv, curves.svg and curves.png")
         ->required();
     app->add_flag("--flicker-over-gaps", o->overGaps,
                   "report flicker after missing or broken frames, too, by comparing with the frame before the gap");
     app->add_flag("--no-pictures", o->noPictures, "do not write pictures of the frames");
-    addOutputFile(
-        *app, "--mp4", "FILE", [o](const std::string& path) { o->movie = path; },
-        "also write a film of the pictures; needs ffmpeg", checkMovieSuffix);
-    addValue(
-        *app, "--fps", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->framesPerSecond = parseRealAbove(text, option, 0, 240);
-        },
-        "frames per second of the film (default 10)");
+    addOutputFile(*app, "--mp4", o->movie, "also write a film of the pictures; needs ffmpeg", checkMovieSuffix);
+    addValue(*app, "--fps", "N", o->framesPerSecond, realAbove(0, 240), "frames per second of the film (default 10)");
     app->add_flag("--require-converged", o->requireConverged,
                   "exit with status 1 if a frame is not on target; everything is written all the same");
     o->scene.picture.add(*app, PictureOptions::Mode::OfSession);

@@ -32,12 +32,6 @@ struct Options {
     Rgb background{0, 0, 0};
 };
 
-std::vector<std::string> namesOf(const TransferFunction& tf) {
-    std::vector<std::string> names;
-    for (const Feature& f : tf.features) names.push_back(f.name);
-    return names;
-}
-
 ViewAngles parseSpaceView(const std::string& text, const std::string& option) {
     const auto v = parseReals(text, option);
     const std::string form = "give AZIMUTH,ELEVATION[,ZOOM]: degrees, elevation from -90 to 90, zoom from 0.1 to 10";
@@ -46,7 +40,7 @@ ViewAngles parseSpaceView(const std::string& text, const std::string& option) {
     return {v[0], v[1], v.size() == 3 ? v[2] : 1.0};
 }
 
-/// The methods whose ways are drawn, and "runs".
+/// The methods whose paths are drawn, and "runs".
 void parsePaths(const std::string& text, const std::string& option, Options& o) {
     o.methods.clear();
     o.runs = false;
@@ -54,15 +48,14 @@ void parsePaths(const std::string& text, const std::string& option, Options& o) 
         if (word == "runs")
             o.runs = true;
         else
-            o.methods.push_back(atOption(option, [&] { return fromName<SearchMethod>(word); }));
+            o.methods.push_back(parseName<SearchMethod>(word, option));
     }
 }
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
-    if (!o.targets && !o.scene.session.file)
-        throw UsageError("--target is required", "pellucid-cli space", "see pellucid-cli space --help");
-    if (o.runs && !o.scene.session.file)
+    if (!o.targets && !o.scene.sessionFile) throw isRequired("--target", "space");
+    if (o.runs && !o.scene.sessionFile)
         throw UsageError("runs come from a session, and none is given", "--paths",
                          "name methods, or give --session FILE");
 }
@@ -97,10 +90,8 @@ std::vector<SpacePath> searchPaths(const Options& o, Workspace& workspace, const
         OptimizeOptions options = *scene.session.optimize;
         options.method = method;
         options.exactShares = true; // F is all that the space shows
-        JobControl job = progress.phase("optimizing");
-        job.progress = nullptr; // how many moves it takes nobody knows
-        const OptimizeResult r =
-            workspace.optimize(input, space.targets, limitsOf(scene.tf, *scene.session.goals), options, job);
+        const OptimizeResult r = workspace.optimize(input, space.targets, limitsOf(scene.tf, *scene.session.goals),
+                                                    options, progress.openPhase("optimizing"));
         if (r.reason == StopReason::Cancelled) throw Cancelled{};
         paths.push_back({name(method), pathColor(paths.size()), r.history, r.best});
         Json one{{"method", name(method)},
@@ -171,6 +162,37 @@ Json jsonOf(const ParameterSpace& space, const std::vector<std::string>& names) 
             {"evaluations", space.evaluations}};
 }
 
+/// Without paths.
+SpaceView viewOf(const Options& o, const Scene& scene, const ParameterSpace& space, int shown) {
+    SpaceView view;
+    view.shown = shown;
+    for (const Feature& f : scene.tf.features) {
+        view.names.push_back(f.name);
+        view.colors.push_back(f.color);
+    }
+    view.tolerance = scene.session.optimize->tolerance;
+    view.width = o.size.width;
+    view.height = o.size.height;
+    view.background = o.background;
+    view.camera = spaceCamera(space, o.view.azimuth, o.view.elevation, o.view.zoom);
+    return view;
+}
+
+/// Writes the files that are asked for, and returns their names.
+std::vector<std::string> write(const Options& o, const ParameterSpace& space, const SpaceView& view,
+                               Progress& progress) {
+    if (o.out) writeImage(spaceImage(space, view, progress.phase("rendering")), *o.out);
+    if (o.save) {
+        const std::vector<double>& values = space.values(view.shown);
+        writeNrrd(space.geometry(), Grid<float>(space.dims(), {values.begin(), values.end()}), *o.save);
+    }
+    if (o.csv) writeTextAtomically(*o.csv, csvOf(space, view.names));
+    std::vector<std::string> files;
+    for (const std::optional<std::string>& file : {o.out, o.save, o.csv})
+        if (file) files.push_back(*file);
+    return files;
+}
+
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     check(o);
@@ -179,9 +201,7 @@ Answer run(const Options& o, Progress& progress) {
     std::vector<std::string> notices = opened.notices();
     const std::vector<double> targets = targetsOf(o.targets, scene, notices);
     const ParameterAxes axes = axesOf(o, scene, targets);
-    const std::vector<std::string> names = namesOf(scene.tf);
-    SpaceView view;
-    view.shown = o.show == "F" ? kObjective : static_cast<int>(parseFeature(o.show, "--show", scene.tf));
+    const int shown = o.show == "F" ? kObjective : static_cast<int>(parseFeature(o.show, "--show", scene.tf));
 
     MeasureInput input = measureInput(scene);
     const bool published = input.settings.profile == Profile::Published; // knows planes of voxels, and no lengths
@@ -193,48 +213,22 @@ Answer run(const Options& o, Progress& progress) {
     Workspace workspace;
     const std::string engine = prepare(workspace, input, progress).engine;
     const Stopwatch sampling;
-    const EngineVws function(workspace.engine(input), input.view, input.tf, workspace.weights(input),
-                             input.settings.vws);
-    const ParameterSpace space = sampleParameterSpace(function, targets, axes, progress.phase("sampling"));
+    const ParameterSpace space = sampleParameterSpace(workspace.vws(input), targets, axes, progress.phase("sampling"));
     const double seconds = sampling.seconds();
     Json pathsJson;
+    SpaceView view = viewOf(o, scene, space, shown);
     view.paths = searchPaths(o, workspace, input, scene, space, progress, pathsJson);
-
-    view.names = names;
-    for (const Feature& f : scene.tf.features) view.colors.push_back(f.color);
-    view.tolerance = scene.session.optimize->tolerance;
-    view.width = o.size.width;
-    view.height = o.size.height;
-    view.background = o.background;
-    view.camera = spaceCamera(space, o.view.azimuth, o.view.elevation, o.view.zoom);
-    std::vector<std::string> files;
-    if (o.out) {
-        writeImage(spaceImage(space, view, progress.phase("rendering")), *o.out);
-        files.push_back(*o.out);
-    }
-    if (o.save) {
-        Grid<float> grid(space.dims());
-        const auto& values = space.values(view.shown);
-        for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = static_cast<float>(values[i]);
-        writeNrrd(space.geometry(), grid, *o.save);
-        files.push_back(*o.save);
-    }
-    if (o.csv) {
-        writeTextAtomically(*o.csv, csvOf(space, names));
-        files.push_back(*o.csv);
-    }
+    const std::vector<std::string> files = write(o, space, view, progress);
 
     Json json{{"command", "space"}, {"engine", engine}, {"volume", volume}, {"coarser_by", factor}, {"show", o.show}};
-    json.update(jsonOf(space, names));
-    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
+    json.update(jsonOf(space, view.names));
+    addMapping(json, scene);
     json["paths"] = std::move(pathsJson);
     json["files"] = files;
     json["seconds"] = {{"sampling", seconds}, {"total", total.seconds()}};
     json["empty"] = emptyFeatures(scene.tf, *scene.histogram);
     return {textOf(space, namesWithEmpty(scene.tf, *scene.histogram), factor, view.paths, files, seconds),
-            std::move(json),
-            std::move(notices),
-            {}};
+            std::move(json), std::move(notices)};
 }
 
 } // namespace
@@ -244,33 +238,27 @@ Command addSpace(CLI::App& program) {
         "space", "Shows how VWS and distance from the targets depend on the opacities of two or three features");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
-    addValue(
-        *app, "--target", kTargetForms,
-        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
-        "shares of attention, as in optimize; required unless a session has targets");
+    addValue(*app, "--target", kTargetForms, o->targets, TargetInput::parse,
+             "shares of attention, as in optimize; required unless a session has targets");
     addValue(
         *app, "--features", "A,B[,C]",
         [o](const std::string& text, const std::string& option) {
             o->features = split(text, ',');
             if (o->features->size() != 2 && o->features->size() != 3)
-                throw UsageError("a parameter space has two features or three", option, "name so many");
+                throw UsageError("a parameter space has two features or three", option, "name two or three");
         },
         "names of the features that get an axis; the others keep their opacities (default: the three of the largest "
         "targets)");
-    addValue(
-        *app, "--samples", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->axes.samples = static_cast<int>(parseInteger(text, option, 2, kMostAxisSamples));
-        },
-        "samples along each axis, 2 to 64 (default 11)");
+    addValue(*app, "--samples", "N", o->axes.samples, wholeFrom(2, kMostAxisSamples),
+             "samples along each axis, 2 to 64 (default 11)");
     addValue(
         *app, "--scale", "linear|log[:LOWEST]",
         [o](const std::string& text, const std::string& option) {
             const auto parts = split(text, ':');
-            o->axes.scale = atOption(option, [&] { return fromName<AxisScale>(parts.front()); });
+            o->axes.scale = parseName<AxisScale>(parts.front(), option);
             if (parts.size() > 2 || (parts.size() == 2 && o->axes.scale == AxisScale::Linear))
                 throw UsageError("'" + text + "' is no scale", option, "give linear, log or log:LOWEST");
-            if (parts.size() == 2) o->axes.lowest = parseReal(parts[1], option, 1e-6, 0.5);
+            if (parts.size() == 2) o->axes.lowest = parseRealFrom(parts[1], option, 1e-6, 0.5);
         },
         "opacities from 0 to 1 in equal steps (default), or from LOWEST (default 0.001) to 1 in equal factors");
     addValue(
@@ -281,36 +269,25 @@ Command addSpace(CLI::App& program) {
         },
         "sample a copy of the volume that is coarser by N, of the same lengths; auto (default): 1 unless that takes "
         "long");
-    addValue(
-        *app, "--show", "F|NAME", [o](const std::string& text, const std::string&) { o->show = text; },
-        "what picture and --save are of: the distance from the targets (default), or the VWS of a feature");
+    addValue(*app, "--show", "F|NAME", o->show, anyText,
+             "what the picture and --save show: the distance from the targets (default), or the VWS of a feature");
     addValue(
         *app, "--paths", "METHOD,...",
         [o](const std::string& text, const std::string& option) { parsePaths(text, option, *o); },
-        "draw the ways of these methods from the present opacities: newton, parallel, line, fixed; and runs: those of "
-        "the session");
+        "draw the paths that these methods take from the present opacities: newton, parallel, line, fixed; runs: the "
+        "paths of the session's runs");
     addOutputFile(
-        *app, "--out", "FILE", [o](const std::string& path) { o->out = path; },
+        *app, "--out", o->out,
         "the picture to write: of three features a volume with its axes, of two a heat map; .png, .tif, .exr or .jpg",
         checkImageSuffix);
-    addValue(
-        *app, "--size", "WxH",
-        [o](const std::string& text, const std::string& option) { o->size = parseImageSize(text, option); },
-        "pixels (default 512x512)");
-    addValue(
-        *app, "--background", "COLOR",
-        [o](const std::string& text, const std::string& option) { o->background = parseColor(text, option); },
-        "components R,G,B from 0 to 1 or #rrggbb (default 0,0,0)");
-    addValue(
-        *app, "--space-view", "AZIMUTH,ELEVATION[,ZOOM]",
-        [o](const std::string& text, const std::string& option) { o->view = parseSpaceView(text, option); },
-        "from where the volume of three features is seen, degrees (default 35,25); --view is that of the figures");
-    addOutputFile(
-        *app, "--save", "FILE", [o](const std::string& path) { o->save = path; },
-        "write the samples of what is shown (NRRD, float32; positions along the axes from 0 to 1)");
-    addOutputFile(
-        *app, "--csv", "FILE", [o](const std::string& path) { o->csv = path; },
-        "write every sample: opacities, VWS of each feature, F");
+    addValue(*app, "--size", "WxH", o->size, parseImageSize, "pixels (default 512x512)");
+    addValue(*app, "--background", "COLOR", o->background, parseColor,
+             "components R,G,B from 0 to 1 or #rrggbb (default 0,0,0)");
+    addValue(*app, "--space-view", "AZIMUTH,ELEVATION[,ZOOM]", o->view, parseSpaceView,
+             "from where the volume of three features is seen, degrees (default 35,25); --view is that of the figures");
+    addOutputFile(*app, "--save", o->save,
+                  "write the samples of what is shown (NRRD, float32; positions along the axes from 0 to 1)");
+    addOutputFile(*app, "--csv", o->csv, "write every sample: opacities, VWS of each feature, F");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -131,8 +131,7 @@ Json jsonOf(const ViewMetric& metric, const std::string& feature, const BestView
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    if (!o.targets && !o.feature && !o.scene.session.file)
-        throw UsageError("--target or --feature is required", "pellucid-cli views", "see pellucid-cli views --help");
+    if (!o.targets && !o.feature && !o.scene.sessionFile) throw isRequired("--target or --feature", "views");
     if (o.targets && o.feature)
         throw UsageError("views are judged by one figure", "--target and --feature", "leave one out");
     const Opened opened = resolve(o.scene, progress, {toMeasure("measuring"), true});
@@ -159,11 +158,9 @@ Answer run(const Options& o, Progress& progress) {
     if (o.map && !isTable(*o.map)) writeImage(pictureOf(best.map), *o.map);
     const std::string feature = o.feature.value_or("");
     Json json = jsonOf(metric, feature, best, *input.volume, engine, seconds);
-    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    return {textOf(metric, feature, best, input.volume->geometry(), engine, seconds),
-            std::move(json),
-            std::move(notices),
-            {}};
+    addMapping(json, scene);
+    return {textOf(metric, feature, best, input.volume->geometry(), engine, seconds), std::move(json),
+            std::move(notices)};
 }
 
 } // namespace
@@ -172,13 +169,9 @@ Command addViews(CLI::App& program) {
     CLI::App* app = program.add_subcommand("views", "The best view: a figure over all directions, and its best");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
-    addValue(
-        *app, "--target", kTargetForms,
-        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
-        "the distance F from these shares, as in optimize (default: the session's)");
-    addValue(
-        *app, "--feature", "NAME", [o](const std::string& text, const std::string&) { o->feature = text; },
-        "how much of this feature is seen");
+    addValue(*app, "--target", kTargetForms, o->targets, TargetInput::parse,
+             "the distance F from these shares, as in optimize (default: the session's)");
+    addValue(*app, "--feature", "NAME", o->feature, anyText, "how much of this feature is seen");
     addValue(
         *app, "--metric", "vws|visibility",
         [o](const std::string& text, const std::string& option) {
@@ -187,20 +180,15 @@ Command addViews(CLI::App& program) {
             o->figure = text == "vws" ? Figure::Vws : Figure::Visibility;
         },
         "which figure of the feature (default vws)");
-    addValue(
-        *app, "--count", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->count = static_cast<int>(parseInteger(text, option, 16, kMostSphereViews));
-        },
-        "directions, 16 to " + std::to_string(kMostSphereViews) + " (default " + std::to_string(kSphereViews) + ")");
+    addValue(*app, "--count", "N", o->count, wholeFrom(16, kMostSphereViews),
+             "directions, 16 to " + std::to_string(kMostSphereViews) + " (default " + std::to_string(kSphereViews) +
+                 ")");
+    addOutputFile(*app, "--out-camera", o->outCamera, "write the best view's camera");
     addOutputFile(
-        *app, "--out-camera", "FILE", [o](const std::string& path) { o->outCamera = path; },
-        "write the best view's camera");
-    addOutputFile(
-        *app, "--map", "FILE", [o](const std::string& path) { o->map = path; },
+        *app, "--map", o->map,
         "write the map: a table (.csv) or a picture, azimuth to the right and elevation up, the better the brighter",
         [](const std::string& path) {
-            if (!isTable(path)) atOption("--map", [&] { return checkImageSuffix(path), 0; });
+            if (!isTable(path)) atOption("--map", [&] { checkImageSuffix(path); });
         });
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

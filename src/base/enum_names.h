@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace pellucid {
 
@@ -52,20 +53,12 @@ std::optional<E> findNamed(std::string_view text) {
     return {};
 }
 
-/// "thesis, narrow", or with other text between the names.
-template <NamedEnum E>
-std::string listOf(const char* between = ", ") {
-    std::string list;
-    for (const char* one : kNamesOf<E>.names) list += (list.empty() ? "" : between) + std::string(one);
-    return list;
-}
-
 /// The value of this name. Throws UsageError that lists all names.
 template <NamedEnum E>
 E fromName(const std::string& text) {
     if (const std::optional<E> value = findNamed<E>(text)) return *value;
     throw UsageError(std::string("there is no ") + kNamesOf<E>.kind + " '" + text + "'", "",
-                     "choose one of " + listOf<E>());
+                     "give " + anyOf({kNamesOf<E>.names.begin(), kNamesOf<E>.names.end()}));
 }
 
 } // namespace pellucid

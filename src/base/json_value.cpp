@@ -68,6 +68,8 @@ std::int64_t JsonValue::integer(std::int64_t lo, std::int64_t hi) const {
     return value;
 }
 
+int JsonValue::whole(int lo, int hi) const { return static_cast<int>(integer(lo, hi)); }
+
 bool JsonValue::boolean() const {
     if (!m_json->is_boolean()) fail("true or false is expected");
     return m_json->get<bool>();

@@ -37,6 +37,7 @@ public:
     double number(double lo, double hi) const;
     std::vector<double> numbers() const;
     std::int64_t integer(std::int64_t lo, std::int64_t hi) const;
+    int whole(int lo, int hi) const; ///< the same, as an int
     bool boolean() const;
     std::string text() const;
     Rgb color() const; ///< "#rrggbb", or [r,g,b] with components in [0,1]

@@ -29,14 +29,6 @@ constexpr const char* kInfinite = "infinite";
 
 SettingValue valueIn(const Setting& setting, const void* settings) { return setting.at(const_cast<void*>(settings)); }
 
-std::string joined(std::span<const char* const> names, const char* none) {
-    std::vector<std::string> all(names.begin(), names.end());
-    if (none != nullptr) all.emplace_back(none);
-    std::string text;
-    for (std::size_t i = 0; i < all.size(); ++i) text += (i == 0 ? "" : i + 1 == all.size() ? " or " : ", ") + all[i];
-    return text;
-}
-
 /// `what` is wrong with the text.
 [[noreturn]] void refuse(const Setting& setting, const void* settings, const std::string& what) {
     throw UsageError(what, "", "give " + allowedText(setting, settings));
@@ -111,6 +103,11 @@ std::string NumberRange::text() const {
     return from + (isAbove ? " and up to " : open == Open::High ? " to below " : " to ") + plainText(hi);
 }
 
+bool isNumber(const SettingValue& value) {
+    return std::holds_alternative<int*>(value) || std::holds_alternative<double*>(value) ||
+           std::holds_alternative<std::optional<double>*>(value);
+}
+
 std::string Setting::name() const {
     std::string text = words;
     text.erase(std::remove(text.begin(), text.end(), '&'), text.end());
@@ -124,6 +121,8 @@ std::string Setting::optionName() const {
     return "--" + text;
 }
 
+std::string Setting::unitText() const { return *unit == '\0' ? std::string() : std::string(" ") + unit; }
+
 const Setting& settingOf(std::span<const Setting> settings, std::string_view key) {
     const auto at = std::find_if(settings.begin(), settings.end(), [&](const Setting& s) { return key == s.key; });
     PELLUCID_CHECK(at != settings.end());
@@ -134,14 +133,18 @@ std::string allowedText(const Setting& setting, const void* settings) {
     const auto number = [&](const char* what) {
         return what + setting.range.text() + (setting.none ? std::string(" or ") + setting.none : "");
     };
+    const auto name = [&](const Choice& choice) {
+        std::vector<std::string> names(choice.names.begin(), choice.names.end());
+        if (setting.none != nullptr) names.emplace_back(setting.none);
+        return anyOf(names);
+    };
     constexpr const char* kColor = "R,G,B from 0 to 1, or #rrggbb";
     return std::visit(
         Overloaded{[](bool*) { return std::string("true or false"); }, [&](int*) { return number("a whole number "); },
                    [&](double*) { return number("a number "); },
                    [&](std::optional<double>*) { return number("a number "); },
                    [](std::string*) { return std::string("a name"); }, [](Rgb*) { return std::string(kColor); },
-                   [](std::optional<Rgb>*) { return std::string(kColor); },
-                   [&](const Choice& c) { return joined(c.names, setting.none); }},
+                   [](std::optional<Rgb>*) { return std::string(kColor); }, name},
         valueIn(setting, settings));
 }
 
@@ -167,7 +170,7 @@ std::string shownText(const Setting& setting, const void* settings) {
     if (const auto* v = std::get_if<double*>(&value)) number = *v;
     if (const auto* v = std::get_if<std::optional<double>*>(&value); v != nullptr && **v) number = &***v;
     const std::string text = number != nullptr ? shortText(*number) : textOf(setting, settings);
-    return *setting.unit == '\0' || text.empty() ? text : text + " " + setting.unit;
+    return text.empty() ? text : text + setting.unitText();
 }
 
 void setText(const Setting& setting, void* settings, const std::string& text) {
@@ -236,16 +239,15 @@ void takeSettings(const JsonValue& object, std::span<const Setting> settings, vo
         if (!object.has(setting.key)) continue;
         const JsonValue given = object[setting.key];
         try {
-            std::visit(Overloaded{[&](bool* v) { *v = given.boolean(); },
-                                  [&](int* v) { *v = static_cast<int>(given.integer(INT_MIN, INT_MAX)); },
-                                  [&](double* v) { *v = numberIn(given); },
-                                  [&](std::optional<double>* v) {
-                                      *v = isNone(setting, given) ? std::optional<double>() : numberIn(given);
-                                  },
-                                  [&](Rgb* v) { *v = given.color(); },
-                                  [&](std::optional<Rgb>* v) { *v = given.color(); },
-                                  [&](auto&&) { setText(setting, values, given.text()); }},
-                       setting.at(values));
+            std::visit(
+                Overloaded{[&](bool* v) { *v = given.boolean(); }, [&](int* v) { *v = given.whole(INT_MIN, INT_MAX); },
+                           [&](double* v) { *v = numberIn(given); },
+                           [&](std::optional<double>* v) {
+                               *v = isNone(setting, given) ? std::optional<double>() : numberIn(given);
+                           },
+                           [&](Rgb* v) { *v = given.color(); }, [&](std::optional<Rgb>* v) { *v = given.color(); },
+                           [&](auto&&) { setText(setting, values, given.text()); }},
+                setting.at(values));
             check(setting, values);
         } catch (const UsageError& e) {
             given.fail(e.problem(), e.whatToDo());

@@ -59,6 +59,8 @@ Choice choiceOf(std::optional<E>& value) {
 /// Where the value of a setting lies.
 using SettingValue =
     std::variant<bool*, int*, double*, std::optional<double>*, std::string*, Rgb*, std::optional<Rgb>*, Choice>;
+/// Whether it is a number, or may be one.
+bool isNumber(const SettingValue& value);
 
 /// A setting of some struct of settings, which the functions below take as `void*`.
 struct Setting {
@@ -76,6 +78,7 @@ struct Setting {
 
     std::string name() const;       ///< words without the mnemonic
     std::string optionName() const; ///< "--max-iterations"; empty: it has none
+    std::string unitText() const;   ///< what stands behind a number: " d0"; empty: it has no unit
     bool isUsed(const void* settings) const { return used == nullptr || used(settings); }
 };
 

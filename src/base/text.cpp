@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <iterator>
+#include <span>
 
 namespace pellucid {
 
@@ -24,6 +25,11 @@ std::string inQuotes(std::string_view text) {
     std::string quote("'");
     quote += text.substr(0, kMost);
     return quote + (text.size() > kMost ? "…'" : "'");
+}
+
+std::string anyOf(const std::vector<std::string>& words) {
+    if (words.size() < 2) return joined(words);
+    return joined(std::span(words).first(words.size() - 1)) + " or " + words.back();
 }
 
 std::vector<std::string> splitWords(std::string_view text) {

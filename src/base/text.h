@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pellucid {
@@ -13,6 +15,18 @@ std::string describeBytes(std::uint64_t bytes);
 
 /// A text out of a header, in quotes and cut to 40 bytes: a damaged one may go on for long.
 std::string inQuotes(std::string_view text);
+/// The texts of all with another text between each two: "a, b, c". `textOf`: a function or a member.
+template <class Range, class Text = std::identity>
+std::string joined(const Range& all, std::string_view between = ", ", const Text& textOf = {}) {
+    std::string text;
+    for (bool isFirst = true; const auto& one : all) {
+        if (!std::exchange(isFirst, false)) text += between;
+        text += std::invoke(textOf, one);
+    }
+    return text;
+}
+/// What a text may be, one of them or more: "a, b or c".
+std::string anyOf(const std::vector<std::string>& words);
 /// Blank-separated words.
 std::vector<std::string> splitWords(std::string_view text);
 std::string trimmed(std::string_view text);

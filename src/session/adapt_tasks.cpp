@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
@@ -28,10 +29,20 @@ public:
         value += 0.0; // −0 is 0
         add(&value, sizeof value);
     }
-    void add(long long value) { add(&value, sizeof value); }
+    template <std::integral Whole>
+    void add(Whole value) {
+        const auto wide = static_cast<long long>(value);
+        add(&wide, sizeof wide);
+    }
     void add(const std::string& text) {
-        add(static_cast<long long>(text.size()));
+        add(text.size());
         add(text.data(), text.size());
+    }
+    void add(const Rgb& color) { addAll(color.r, color.g, color.b); }
+    void add(const ValueRange& range) { addAll(range.lo, range.hi); }
+    template <class... Values>
+    void addAll(const Values&... values) {
+        (add(values), ...);
     }
     std::string text() const {
         std::array<char, 40> buffer{};
@@ -53,52 +64,24 @@ void addSource(Hash& hash, const VolumeSource& source) {
     };
     addFile(source.path);
     for (const std::string& path : source.more) addFile(path);
-    hash.add(static_cast<long long>(source.step));
-    hash.add(source.array);
+    hash.addAll(source.step, source.array);
     if (source.raw) {
         const RawLayout& raw = *source.raw;
-        for (const long long v : {static_cast<long long>(raw.dims.x), static_cast<long long>(raw.dims.y),
-                                  static_cast<long long>(raw.dims.z), static_cast<long long>(raw.type),
-                                  static_cast<long long>(raw.bigEndian), static_cast<long long>(raw.skipBytes)})
-            hash.add(v);
-        for (int a = 0; a < 3; ++a) hash.add(raw.spacing[a]);
+        hash.addAll(raw.dims.x, raw.dims.y, raw.dims.z, static_cast<int>(raw.type), raw.bigEndian, raw.skipBytes,
+                    raw.spacing.x, raw.spacing.y, raw.spacing.z);
     }
-    hash.add(source.missing.value_or(std::nan("")));
-    for (const int v : {source.component, source.sampleSize, static_cast<int>(source.seed), source.downsample})
-        hash.add(static_cast<long long>(v));
+    hash.addAll(source.missing.value_or(std::nan("")), source.component, source.sampleSize,
+                static_cast<int>(source.seed), source.downsample);
     if (source.region)
-        for (int a = 0; a < 3; ++a) {
-            hash.add(static_cast<long long>(source.region->lo[a]));
-            hash.add(static_cast<long long>(source.region->hi[a]));
-        }
+        for (int a = 0; a < 3; ++a) hash.addAll(source.region->lo[a], source.region->hi[a]);
 }
 
 void addTf(Hash& hash, const TransferFunction& tf) {
-    const auto addColor = [&](const Rgb& c) {
-        hash.add(c.r);
-        hash.add(c.g);
-        hash.add(c.b);
-    };
-    hash.add(static_cast<long long>(tf.points.size()));
-    for (const ControlPoint& p : tf.points) {
-        hash.add(p.x);
-        hash.add(p.opacity);
-        addColor(p.color);
-        hash.add(static_cast<long long>(p.fixed));
-    }
-    hash.add(static_cast<long long>(tf.features.size()));
-    for (const Feature& f : tf.features) {
-        hash.add(f.name);
-        hash.add(f.a);
-        hash.add(f.b);
-        addColor(f.color);
-        hash.add(static_cast<long long>(f.hidden));
-        hash.add(static_cast<long long>(f.id));
-    }
-    if (tf.range) {
-        hash.add(tf.range->lo);
-        hash.add(tf.range->hi);
-    }
+    hash.add(tf.points.size());
+    for (const ControlPoint& p : tf.points) hash.addAll(p.x, p.opacity, p.color, p.fixed);
+    hash.add(tf.features.size());
+    for (const Feature& f : tf.features) hash.addAll(f.name, f.a, f.b, f.color, f.hidden, f.id);
+    if (tf.range) hash.add(*tf.range);
 }
 
 /// Fingerprints of one session: what its frames have in common is hashed once.
@@ -129,10 +112,7 @@ public:
         for (std::size_t i = 0; i < variables; ++i) {
             const Variable& v = (*session.variables)[i];
             m_common.add(v.derivation ? v.derivation->text() : std::string());
-            if (v.window) {
-                m_common.add(v.window->lo);
-                m_common.add(v.window->hi);
-            }
+            if (v.window) m_common.add(*v.window);
             if (i > 0 || v.derivation) { // of the first one, plain, frame by frame
                 m_common.add(v.name);
                 addSource(m_common, v.source);
@@ -148,7 +128,7 @@ public:
     std::string of(int frame, const TransferFunction& previous) const {
         Hash hash = m_common;
         addSource(hash, m_series.listing().frames[static_cast<std::size_t>(frame)].source);
-        if (m_session.hsb->on) hash.add(static_cast<long long>(frame));
+        if (m_session.hsb->on) hash.add(frame);
         addTf(hash, previous);
         const TfTrack& track = m_session.variable().track;
         if (const int key = track.keyBefore(frame); m_needsKey && key >= 0) {
@@ -158,11 +138,8 @@ public:
         if (m_session.adapt->mode == Mode::Optimize) {
             const FeatureGoals goals = frame == m_session.frame ? *m_session.goals : goalsAt(m_session, frame);
             for (const double t : targetsOf(previous, goals)) hash.add(t);
-            for (const OpacityLimits& limit : limitsOf(previous, goals)) {
-                hash.add(limit.lowest);
-                hash.add(limit.highest);
-                hash.add(static_cast<long long>(limit.locked));
-            }
+            for (const OpacityLimits& limit : limitsOf(previous, goals))
+                hash.addAll(limit.lowest, limit.highest, limit.locked);
         }
         return hash.text();
     }

@@ -207,8 +207,7 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         const MeasureInput input = measureInput(scene);
         const std::vector<double> targets = scene.targets();
         const std::vector<OpacityLimits> limits = limitsOf(scene.tf, *scene.session.goals);
-        VisibilityEngine& engine = workspace.engine(input);
-        const EngineVws function(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws);
+        const EngineVws function = workspace.vws(input, quiet);
         TrackOptions track;
         track.coherence = settings.usedCoherence();
         std::optional<std::vector<std::vector<double>>> metric;
@@ -284,9 +283,7 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
     const auto withFunction = [&](std::size_t i, const auto& use) {
         const Scene scene = sceneAt(basis, frames[i], tfs[i], quiet);
         tfs[i] = scene.tf;
-        const MeasureInput input = measureInput(scene);
-        VisibilityEngine& engine = workspace.engine(input);
-        use(scene, EngineVws(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws));
+        use(scene, workspace.vws(measureInput(scene), quiet));
     };
 
     std::vector<FrameModel> models(frames.size());

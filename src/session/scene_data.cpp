@@ -120,9 +120,8 @@ void openNewVariables(Scene& scene, const Scene& basis, const MemoryUse& then, c
 }
 
 std::string SeriesFinder::knownNames() const {
-    std::string names;
-    for (const Variable& v : *m_scene.session.variables) names += (names.empty() ? "" : ", ") + v.name;
-    return names + "; or gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME";
+    return joined(*m_scene.session.variables, ", ", &Variable::name) +
+           "; or gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME";
 }
 
 // ---- targets

@@ -162,13 +162,19 @@ const Feature* featureOf(const TransferFunction& tf, FeatureId id) {
     return nullptr;
 }
 
+/// Null where the feature has none.
+const FeatureGoal* goalOf(const Feature& feature, const FeatureGoals& goals) {
+    const auto goal = goals.find(feature.id);
+    return goal == goals.end() ? nullptr : &goal->second;
+}
+
 /// What a feature without a goal is given: it is wanted as much as the others of its transfer function on average.
 double averageTarget(const TransferFunction& tf, const FeatureGoals& goals) {
     double sum = 0;
     std::size_t known = 0;
     for (const Feature& f : tf.features)
-        if (const auto goal = goals.find(f.id); goal != goals.end()) {
-            sum += goal->second.target;
+        if (const FeatureGoal* goal = goalOf(f, goals)) {
+            sum += goal->target;
             ++known;
         }
     return known > 0 ? sum / static_cast<double>(known) : 1.0 / static_cast<double>(tf.features.size());
@@ -278,8 +284,8 @@ std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& go
     double sum = 0;
     std::size_t known = 0;
     for (std::size_t i = 0; i < n; ++i)
-        if (const auto goal = goals.find(tf.features[i].id); goal != goals.end()) {
-            targets[i] = goal->second.target;
+        if (const FeatureGoal* goal = goalOf(tf.features[i], goals)) {
+            targets[i] = goal->target;
             sum += targets[i];
             ++known;
         }
@@ -292,20 +298,16 @@ std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& go
         }
     // Locked targets are shares; the others divide what they leave.
     double locked = 0, free = 0;
-    std::vector<bool> isFree(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        if (tf.features[i].hidden) continue;
-        const auto goal = goals.find(tf.features[i].id);
-        isFree[i] = goal == goals.end() || !goal->second.targetLocked;
-        (isFree[i] ? free : locked) += targets[i];
-    }
+    const std::vector<bool> held = heldTargets(tf, goals);
+    for (std::size_t i = 0; i < n; ++i)
+        if (!tf.features[i].hidden) (held[i] ? locked : free) += targets[i];
     if (locked > 0 && locked <= 1 && free > 0) {
         // Shares that sum to 1 already keep their bits.
         const double factor = std::abs(locked + free - 1) > 1e-12 ? (1 - locked) / free : 1;
         for (std::size_t i = 0; i < n; ++i)
             if (tf.features[i].hidden)
                 targets[i] = 0;
-            else if (isFree[i])
+            else if (!held[i])
                 targets[i] *= factor;
         return targets;
     }
@@ -318,8 +320,7 @@ std::vector<OpacityLimits> limitsOf(const TransferFunction& tf, const FeatureGoa
     std::vector<OpacityLimits> limits(tf.features.size());
     for (std::size_t i = 0; i < limits.size(); ++i) {
         const Feature& feature = tf.features[i];
-        if (const auto goal = goals.find(feature.id); goal != goals.end())
-            limits[i] = {goal->second.lowest, goal->second.highest, goal->second.locked};
+        if (const FeatureGoal* goal = goalOf(feature, goals)) limits[i] = {goal->lowest, goal->highest, goal->locked};
         limits[i].locked = limits[i].locked || feature.hidden;
     }
     return limits;
@@ -334,8 +335,8 @@ FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const s
 std::vector<bool> heldTargets(const TransferFunction& tf, const FeatureGoals& goals) {
     std::vector<bool> held;
     for (const Feature& f : tf.features) {
-        const auto goal = goals.find(f.id);
-        held.push_back(f.hidden || (goal != goals.end() && goal->second.targetLocked));
+        const FeatureGoal* goal = goalOf(f, goals);
+        held.push_back(f.hidden || (goal != nullptr && goal->targetLocked));
     }
     return held;
 }

@@ -14,6 +14,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_file.h"
+#include "session/ground_file.h"
 #include "tf/formats/tf_json.h"
 #include "volume/series.h"
 
@@ -27,6 +28,8 @@ namespace {
 constexpr const char* kFormat = "pellucid-session";
 constexpr int kVersion = 1;
 constexpr double kHuge = std::numeric_limits<double>::max();
+constexpr int kMostInt = std::numeric_limits<int>::max();
+constexpr int kMostCount = 1'000'000'000; ///< of frames, moves, evaluations
 
 // ---- data files
 
@@ -138,6 +141,9 @@ T to(const JsonValue& j) {
     return part;
 }
 
+json fromTf(const TransferFunction& tf) { return jsonFromTf(tf, Identities::Keep); }
+TransferFunction toTf(const JsonValue& j) { return tfFromJson(j, Identities::Keep); }
+
 json fromRange(const ValueRange& r) { return {r.lo, r.hi}; }
 ValueRange toRange(const JsonValue& j) {
     const auto ends = j.items(2);
@@ -191,9 +197,8 @@ json fromSource(const VolumeSource& s, const std::string& folder, DataPaths path
 
 RawLayout toRawLayout(const JsonValue& j) {
     RawLayout raw;
-    constexpr int kMost = std::numeric_limits<int>::max();
     const auto dims = j["dims"].items(3);
-    for (int a = 0; a < 3; ++a) raw.dims[a] = static_cast<int>(dims[static_cast<std::size_t>(a)].integer(1, kMost));
+    for (int a = 0; a < 3; ++a) raw.dims[a] = dims[static_cast<std::size_t>(a)].whole(1, kMostInt);
     const auto type = findNamed<SampleType>(j["type"].text());
     if (!type) j["type"].fail("no such sample type", "write u8 i8 u16 i16 u32 i32 f32 or f64");
     raw.type = *type;
@@ -210,8 +215,8 @@ VoxelRegion toRegion(const JsonValue& j) {
     const auto ends = j.items(2), lo = ends[0].items(3), hi = ends[1].items(3);
     for (int a = 0; a < 3; ++a) {
         const auto i = static_cast<std::size_t>(a);
-        region.lo[a] = static_cast<int>(lo[i].integer(0, std::numeric_limits<int>::max() - 1));
-        region.hi[a] = static_cast<int>(hi[i].integer(region.lo[a] + 1, std::numeric_limits<int>::max()));
+        region.lo[a] = lo[i].whole(0, kMostInt - 1);
+        region.hi[a] = hi[i].whole(region.lo[a] + 1, kMostInt);
     }
     return region;
 }
@@ -221,7 +226,7 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
     VolumeSource s;
     if (j.has("sample")) {
         s.path = "sample:" + j["sample"].text();
-        if (j.has("size")) s.sampleSize = static_cast<int>(j["size"].integer(8, 65536));
+        if (j.has("size")) s.sampleSize = j["size"].whole(8, 65536);
         if (j.has("seed"))
             s.seed = static_cast<std::uint32_t>(j["seed"].integer(0, std::numeric_limits<std::uint32_t>::max()));
     } else {
@@ -233,17 +238,15 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
     if (j.has("more"))
         for (const JsonValue& path : j["more"].items()) s.more.push_back(foundPath(path.text(), folder));
     if (j.has("frames")) {
-        constexpr int kMost = std::numeric_limits<int>::max();
         const JsonValue f = j["frames"];
-        s.frames = FrameRange{
-            static_cast<int>(f["first"].integer(0, kMost)), {}, static_cast<int>(f["stride"].integer(1, kMost))};
-        if (f.has("last")) s.frames->last = static_cast<int>(f["last"].integer(s.frames->first, kMost));
+        s.frames = FrameRange{f["first"].whole(0, kMostInt), {}, f["stride"].whole(1, kMostInt)};
+        if (f.has("last")) s.frames->last = f["last"].whole(s.frames->first, kMostInt);
     }
-    if (j.has("step")) s.step = static_cast<int>(j["step"].integer(0, std::numeric_limits<int>::max()));
+    if (j.has("step")) s.step = j["step"].whole(0, kMostInt);
     if (j.has("array")) s.array = j["array"].text();
-    if (j.has("component")) s.component = static_cast<int>(j["component"].integer(0, 1'000'000));
+    if (j.has("component")) s.component = j["component"].whole(0, 1'000'000);
     if (j.has("missing")) s.missing = j["missing"].number();
-    if (j.has("downsample")) s.downsample = static_cast<int>(j["downsample"].integer(1, 65536));
+    if (j.has("downsample")) s.downsample = j["downsample"].whole(1, 65536);
     if (j.has("region")) s.region = toRegion(j["region"]);
     if (!s.isSample() && j.has("bytes") && j.has("crc32")) {
         const auto bytes = static_cast<std::uint64_t>(j["bytes"].integer(0, INT64_MAX));
@@ -265,8 +268,6 @@ Derivation toDerivation(const JsonValue& j) {
     j.fail("no such derivation", "write gradient:NAME, volatility:NAME:FRAMES or difference:NAME:FRAME");
 }
 
-constexpr std::int64_t kMostFrames = 1'000'000'000;
-
 json fromVariable(const Variable& v, const std::string& folder, DataPaths paths) {
     json j{{"name", v.name}, {"transfer_functions", json::array()}};
     if (v.derivation)
@@ -275,11 +276,11 @@ json fromVariable(const Variable& v, const std::string& folder, DataPaths paths)
         j["source"] = fromSource(v.source, folder, paths);
     if (v.window) j["window"] = fromRange(*v.window);
     for (const auto& [frame, tf] : v.track.keys)
-        j["transfer_functions"].push_back({{"frame", frame}, {"tf", jsonFromTf(*tf, Identities::Keep)}});
+        j["transfer_functions"].push_back({{"frame", frame}, {"tf", fromTf(*tf)}});
     for (const auto& [frame, adapted] : v.track.adapted) {
-        json one{{"frame", frame}, {"tf", jsonFromTf(*adapted.tf, Identities::Keep)}, {"basis", adapted.basis}};
+        json one{{"frame", frame}, {"tf", fromTf(*adapted.tf)}, {"basis", adapted.basis}};
         if (adapted.smooth) {
-            one["smooth_tf"] = jsonFromTf(**adapted.smooth, Identities::Keep);
+            one["smooth_tf"] = fromTf(**adapted.smooth);
             one["smooth_basis"] = adapted.smoothBasis;
         }
         j["adapted"].push_back(std::move(one));
@@ -297,14 +298,13 @@ Variable toVariable(const JsonValue& j, const std::string& folder, std::vector<s
         v.source = toSource(j["source"], folder, notices);
     if (j.has("window")) v.window = toRange(j["window"]);
     for (const JsonValue& key : j["transfer_functions"].items())
-        v.track.keys[static_cast<int>(key["frame"].integer(0, kMostFrames))] =
-            Part<TransferFunction>(tfFromJson(key["tf"], Identities::Keep));
+        v.track.keys[key["frame"].whole(0, kMostCount)] = toTf(key["tf"]);
     if (j.has("adapted"))
         for (const JsonValue& item : j["adapted"].items()) {
-            AdaptedTf& adapted = v.track.adapted[static_cast<int>(item["frame"].integer(0, kMostFrames))];
-            adapted = {Part<TransferFunction>(tfFromJson(item["tf"], Identities::Keep)), item["basis"].text()};
+            AdaptedTf& adapted = v.track.adapted[item["frame"].whole(0, kMostCount)];
+            adapted = {toTf(item["tf"]), item["basis"].text()};
             if (!item.has("smooth_tf")) continue;
-            adapted.smooth = Part<TransferFunction>(tfFromJson(item["smooth_tf"], Identities::Keep));
+            adapted.smooth = toTf(item["smooth_tf"]);
             adapted.smoothBasis = item["smooth_basis"].text();
         }
     v.extraJson = j.unknownKeys({"name", "source", "derived", "window", "transfer_functions", "adapted"});
@@ -323,7 +323,7 @@ json fromTargetKeys(const TargetKeys& keys) {
 TargetKeys toTargetKeys(const JsonValue& j) {
     TargetKeys keys;
     for (const JsonValue& item : j.items()) {
-        auto& targets = keys[static_cast<int>(item["frame"].integer(0, kMostFrames))];
+        auto& targets = keys[item["frame"].whole(0, kMostCount)];
         for (const JsonValue& t : item["targets"].items())
             targets[static_cast<FeatureId>(t["id"].integer(1, INT64_MAX))] = t["target"].number(0, kLargestTarget);
     }
@@ -350,12 +350,8 @@ HsbMapping toHsb(const JsonValue& j) {
 }
 
 json fromGround(const GroundView& g, const std::string& folder, DataPaths paths) {
-    VolumeSource source;
-    source.path = g.path;
-    source.raw = g.raw;
-    source.missing = g.missing;
     json j = from(g);
-    if (!g.path.empty()) j["source"] = fromSource(source, folder, paths);
+    if (!g.path.empty()) j["source"] = fromSource(sourceOf(g), folder, paths);
     return j;
 }
 GroundView toGround(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
@@ -547,7 +543,7 @@ json fromCamera(const Camera& camera) {
 }
 
 json fromRunStart(const RunStart& start) {
-    json j{{"tf", jsonFromTf(start.tf, Identities::Keep)},
+    json j{{"tf", fromTf(start.tf)},
            {"camera", fromCamera(start.camera)},
            {"clip", fromClipping(start.clipping)},
            {"measure", fromMeasure(start.measure)},
@@ -560,7 +556,7 @@ json fromRunStart(const RunStart& start) {
 
 RunStart toRunStart(const JsonValue& j, std::size_t features) {
     RunStart start;
-    start.tf = tfFromJson(j["tf"], Identities::Keep);
+    start.tf = toTf(j["tf"]);
     start.camera = cameraFromJson(j["camera"]);
     start.clipping = toClipping(j["clip"]);
     start.measure = toMeasure(j["measure"]);
@@ -597,7 +593,6 @@ json fromRun(const Run& r) {
 }
 
 Run toRun(const JsonValue& j) {
-    constexpr double kMost = 1'000'000'000;
     Run r;
     r.kind = j["kind"].text();
     r.ended = j["ended"].text();
@@ -610,21 +605,20 @@ Run toRun(const JsonValue& j) {
     r.targets = j["targets"].numbers();
     for (const JsonValue& s : j["history"].items()) {
         for (const JsonValue& opacity : s["opacity"].items()) opacity.number(0, 1);
-        r.history.push_back({s["objective"].number(0, kMost), perFeature(s["vws"]), perFeature(s["opacity"]),
-                             s.has("level") ? static_cast<int>(s["level"].integer(0, 64)) : 0});
+        r.history.push_back({s["objective"].number(0, kMostCount), perFeature(s["vws"]), perFeature(s["opacity"]),
+                             s.has("level") ? s["level"].whole(0, 64) : 0});
     }
     if (!r.history.empty()) perFeature(j["targets"]);
     r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
     if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
     r.before = j["before"].number();
     r.after = j["after"].number();
-    r.iterations = static_cast<int>(j["iterations"].integer(0, static_cast<std::int64_t>(kMost)));
-    if (j.has("number")) r.number = static_cast<int>(j["number"].integer(0, static_cast<std::int64_t>(kMost)));
+    r.iterations = j["iterations"].whole(0, kMostCount);
+    if (j.has("number")) r.number = j["number"].whole(0, kMostCount);
     if (j.has("name")) r.name = j["name"].text();
     if (j.has("started")) r.started = j["started"].text();
-    if (j.has("seconds")) r.seconds = j["seconds"].number(0, kMost);
-    if (j.has("evaluations"))
-        r.evaluations = static_cast<int>(j["evaluations"].integer(0, static_cast<std::int64_t>(kMost)));
+    if (j.has("seconds")) r.seconds = j["seconds"].number(0, kMostCount);
+    if (j.has("evaluations")) r.evaluations = j["evaluations"].whole(0, kMostCount);
     if (j.has("start")) r.start = toRunStart(j["start"], r.features.size());
     return r;
 }
@@ -669,7 +663,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     for (const Variable& v : variables)
         if (!names.insert(v.name).second) j["variables"].fail("each variable needs a name of its own");
     s.variables = std::move(variables);
-    if (j.has("frame")) s.frame = static_cast<int>(j["frame"].integer(0, 1'000'000'000));
+    if (j.has("frame")) s.frame = j["frame"].whole(0, kMostCount);
     if (j.has("features")) s.goals = toGoals(j["features"]);
     if (j.has("hold_targets")) s.holdTargets = j["hold_targets"].boolean();
     if (j.has("density")) s.density = j["density"].number(0, 1);

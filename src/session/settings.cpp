@@ -155,7 +155,6 @@ std::span<const Setting> settingsOf<HsbMapping>() {
 template <>
 std::span<const Setting> settingsOf<GroundView>() {
     using G = GroundView;
-    constexpr auto isThere = [](const void* g) { return !static_cast<const G*>(g)->path.empty(); };
     constexpr auto isDrawn = [](const void* g) {
         const G& ground = *static_cast<const G*>(g);
         return !ground.path.empty() && ground.shown;
@@ -166,8 +165,7 @@ std::span<const Setting> settingsOf<GroundView>() {
          .at = member<&G::colorMap>,
          .words = "Colours",
          .help = "The colours of the ground from its lowest to its highest: a colour map, or terrain, which is blue, "
-                 "green, brown "
-                 "and white, from 0 on where some heights lie below.",
+                 "green, brown and white, from 0 on where some heights lie below.",
          .option = "ground-map",
          .used = isDrawn,
          .checkText = [](const std::string& text) { (void)groundColors(text); }},

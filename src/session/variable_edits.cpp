@@ -1,6 +1,7 @@
 #include "session/variable_edits.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "base/error.h"
@@ -27,11 +28,19 @@ std::string renamedIn(const Session& session, const std::string& text, const Ren
     return rename(text);
 }
 
+/// What drives colours, channel by channel.
+constexpr std::array kDriven{&HsbMapping::saturation, &HsbMapping::brightness, &HsbMapping::hue};
+
+/// `change(driver)` for each of them.
+template <class Change>
+void editChannels(Session& session, const Change& change) {
+    session.hsb.edit([&](HsbMapping& hsb) {
+        for (const auto channel : kDriven) change(hsb.*channel);
+    });
+}
+
 void renameInChannels(Session& session, const Rename& rename) {
-    HsbMapping hsb = *session.hsb;
-    for (std::string* channel : {&hsb.saturation, &hsb.brightness, &hsb.hue})
-        *channel = renamedIn(session, *channel, rename);
-    session.hsb.set(hsb);
+    editChannels(session, [&](std::string& driver) { driver = renamedIn(session, driver, rename); });
 }
 
 /// Whether `text` is `name` or made of it. A damaged file may have variables that are made of themselves.
@@ -71,10 +80,11 @@ std::string titleOf(const Derivation& d) {
 
 /// Of the channels' volatility: its text, or the variable that it is.
 std::string* volatilityIn(const Session& session, HsbMapping& hsb) {
-    for (std::string* channel : {&hsb.saturation, &hsb.brightness, &hsb.hue}) {
-        if (channel->empty()) continue;
-        const auto derivation = derivationOf(session, *channel);
-        if (derivation && derivation->kind == Derivation::Kind::Volatility) return channel;
+    for (const auto channel : kDriven) {
+        std::string& driver = hsb.*channel;
+        if (driver.empty()) continue;
+        const auto derivation = derivationOf(session, driver);
+        if (derivation && derivation->kind == Derivation::Kind::Volatility) return &driver;
     }
     return nullptr;
 }
@@ -134,26 +144,27 @@ void removeVariable(Session& session, const std::string& name) {
     if (session.variables->size() < 2) throw UsageError("the last variable cannot be removed", name, "open other data");
     if (const auto others = madeOf(session, name); !others.empty())
         throw UsageError("variable " + others.front() + " is made of it", name, "remove that one first");
-    HsbMapping hsb = *session.hsb;
-    for (std::string* channel : {&hsb.saturation, &hsb.brightness, &hsb.hue})
-        if (refersTo(session, *channel, name)) channel->clear();
-    session.hsb.set(hsb);
+    editChannels(session, [&](std::string& driver) {
+        if (refersTo(session, driver, name)) driver.clear();
+    });
     session.variables.edit(
         [&](std::vector<Variable>& all) { std::erase_if(all, [&](const Variable& v) { return v.name == name; }); });
 }
 
+namespace {
+
+/// Of a channel that colours, not of opacity.
+std::string HsbMapping::*driverOf(Channel channel) {
+    return channel == Channel::Saturation   ? &HsbMapping::saturation
+           : channel == Channel::Brightness ? &HsbMapping::brightness
+                                            : &HsbMapping::hue;
+}
+
+} // namespace
+
 std::string channelOf(const Session& session, Channel channel) {
-    switch (channel) {
-    case Channel::Opacity:
-        return session.isEmpty() ? "" : session.variable().name;
-    case Channel::Saturation:
-        return session.hsb->saturation;
-    case Channel::Brightness:
-        return session.hsb->brightness;
-    case Channel::Hue:
-        return session.hsb->hue;
-    }
-    return {};
+    if (channel == Channel::Opacity) return session.isEmpty() ? "" : session.variable().name;
+    return (*session.hsb).*driverOf(channel);
 }
 
 void setChannel(Session& session, Channel channel, const std::string& name) {
@@ -166,18 +177,13 @@ void setChannel(Session& session, Channel channel, const std::string& name) {
             variable.name = titleOf(*derivation);
             variable.derivation = derivation;
             wanted = addVariable(session, std::move(variable));
-            HsbMapping hsb = *session.hsb;
-            for (std::string* driven : {&hsb.saturation, &hsb.brightness, &hsb.hue})
-                if (*driven == name) *driven = wanted;
-            session.hsb.set(hsb);
+            editChannels(session, [&](std::string& driver) {
+                if (driver == name) driver = wanted;
+            });
         }
         return exchange(session, session.variable().name, wanted);
     }
-    session.hsb.edit([&](HsbMapping& hsb) {
-        (channel == Channel::Saturation   ? hsb.saturation
-         : channel == Channel::Brightness ? hsb.brightness
-                                          : hsb.hue) = name;
-    });
+    session.hsb.edit([&](HsbMapping& hsb) { hsb.*driverOf(channel) = name; });
 }
 
 void swapOpacityAndBrightness(Session& session) {

@@ -39,9 +39,8 @@ void ViewWorkspace::release() {
 void ViewWorkspace::forget() {
     m_engine.reset();
     m_volume.reset();
-    m_haveWeights = false;
+    m_weightsOf = {};
     m_weights = {};
-    m_weightsColors.reset();
 }
 
 ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job) {
@@ -54,20 +53,15 @@ ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job)
         m_engine = makeDraftEngine(coarse);
         m_volume = input.volume;
     }
-    const TransferFunction colors = colorsOf(input.tf);
-    if (!m_haveWeights || !(m_weightsTf == colors) || !(m_weightsOptions == input.settings.saliency) ||
-        m_weightsColors != input.colors) {
-        m_haveWeights = false;
+    if (const WeightsOf wanted(input); m_weightsOf != wanted) {
+        m_weightsOf = {};
         const Volume& volume = m_engine->volume();
         std::optional<VoxelColors> coarse;
         if (input.colors && volume.dims() != input.volume->dims())
             coarse = coarserColors(*input.colors, coarseningForViews(input.volume->dims()));
         updateSaliencyFields(m_weights, volume, input.tf, input.settings.saliency, {job.stop, {}},
                              coarse ? &*coarse : input.colors.get());
-        m_weightsColors = input.colors;
-        m_weightsTf = colors;
-        m_weightsOptions = input.settings.saliency;
-        m_haveWeights = true;
+        m_weightsOf = wanted;
     }
     return {*m_engine, m_weights};
 }

@@ -42,10 +42,7 @@ private:
     std::mutex m_mutex;                     ///< whoever has stopped may still be at it while the next one begins
     std::shared_ptr<const Volume> m_volume; ///< the one that the copy was made of
     std::unique_ptr<VisibilityEngine> m_engine;
-    TransferFunction m_weightsTf; ///< its colorsOf()
-    std::shared_ptr<const VoxelColors> m_weightsColors;
-    SaliencyOptions m_weightsOptions;
-    bool m_haveWeights = false;
+    WeightsOf m_weightsOf; ///< the volume as it was before it was made coarse
     WeightFields m_weights;
 };
 

@@ -16,6 +16,21 @@ namespace pellucid {
 
 class RaySamples;
 
+/// What weights were made of: other inputs with the same have the same weights.
+struct WeightsOf {
+    std::shared_ptr<const Volume> volume; ///< null: there are no weights
+    TransferFunction colors;              ///< colorsOf() the transfer function
+    std::shared_ptr<const VoxelColors> mapped;
+    SaliencyOptions options;
+    Profile profile = Profile::Default;
+
+    WeightsOf() = default;
+    explicit WeightsOf(const MeasureInput& input)
+        : volume(input.volume), colors(colorsOf(input.tf)), mapped(input.colors), options(input.settings.saliency),
+          profile(input.settings.profile) {}
+    bool operator==(const WeightsOf&) const = default;
+};
+
 /// Used by one thread at a time. The same input gives the same figures, whatever was computed before. An engine that
 /// has failed is not kept.
 class Workspace {
@@ -66,6 +81,8 @@ public:
     VisibilityEngine& engine(const MeasureInput& input);
     /// The fields depend on colours and features alone, so that they outlive changes of opacity.
     const WeightFields& weights(const MeasureInput& input, const JobControl& job = {});
+    /// W of the input's features over their opacities, by engine() and weights(), which it refers to.
+    EngineVws vws(const MeasureInput& input, const JobControl& job = {});
     /// What coverage is computed from. Kept until volume, view or features are others.
     const RayBundle& rays(const MeasureInput& input, const JobControl& job = {});
     /// Its memory, and that of the volume it was made for, is wanted for something else.
@@ -75,7 +92,19 @@ public:
 
 private:
     friend class WorkspaceTools;
-    bool haveWeights(const MeasureInput& input) const;
+    /// What `work()` returns. An engine that failed is not trusted again: it is let go of.
+    template <class Work>
+    auto guarded(const Work& work) {
+        try {
+            return work();
+        } catch (const Cancelled&) {
+            throw;
+        } catch (...) {
+            releaseEngine();
+            throw;
+        }
+    }
+    bool haveWeights(const MeasureInput& input) const { return m_weightsOf == WeightsOf(input); }
     /// By rays of the input's view; weights() are its own. None for the published profile, whose slices are another
     /// problem.
     VwsEstimates estimates(const MeasureInput& input, const JobControl& job);
@@ -83,14 +112,15 @@ private:
     void lookAlong(const MeasureInput& input);
     void releaseRays();
 
-    std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
-    EngineChoice m_choice = EngineChoice::Auto;
-    Quality m_quality = Quality::Normal;
-    Profile m_engineProfile = Profile::Default, m_weightsProfile = Profile::Default;
+    struct EngineOf {
+        std::shared_ptr<const Volume> volume;
+        EngineChoice choice = EngineChoice::Auto;
+        Quality quality = Quality::Normal;
+        Profile profile = Profile::Default;
+        bool operator==(const EngineOf&) const = default;
+    } m_engineOf;
     std::unique_ptr<VisibilityEngine> m_engine;
-    TransferFunction m_weightsTf; // its colorsOf()
-    std::shared_ptr<const VoxelColors> m_weightsColors;
-    SaliencyOptions m_weightsOptions;
+    WeightsOf m_weightsOf;
     WeightFields m_weights;
     struct RaysOf {
         std::shared_ptr<const Volume> volume;

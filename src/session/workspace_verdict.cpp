@@ -18,10 +18,7 @@ public:
 
     OptimizeResult solve(const ReachProblem& problem, bool rough, const JobControl& job) override {
         const MeasureInput input = inputOf(problem);
-        VisibilityEngine& engine = m_workspace.engine(input);
-        const WeightFields& weights = m_workspace.weights(input, job);
-        std::shared_ptr<const VwsFunction> function =
-            std::make_shared<EngineVws>(engine, input.view, input.tf, weights, input.settings.vws);
+        std::shared_ptr<const VwsFunction> function = std::make_shared<EngineVws>(m_workspace.vws(input, job));
         VwsEstimates along = m_workspace.estimates(input, job);
         if (rough && !along.empty()) {
             function = along.front();
@@ -73,7 +70,7 @@ Verdict Workspace::explain(const MeasureInput& input, const std::vector<double>&
     // Only this search ends where nothing is nearer; of others, and of one that was stopped, nobody knows.
     const bool isGlobal =
         options.method == SearchMethod::Newton && options.restarts && found.reason == StopReason::NoProgress;
-    try {
+    return guarded([&] {
         std::vector<std::vector<double>> starts = known;
         starts.push_back(nearest.history[nearest.best].opacity);
         WorkspaceTools tools(*this, input, targets, options, std::move(starts));
@@ -85,12 +82,7 @@ Verdict Workspace::explain(const MeasureInput& input, const std::vector<double>&
         // The published profile has views of its own.
         return pellucid::explain(tools, problem, nearest.targets, nearest,
                                  {options.tolerance, input.settings.profile == Profile::Default}, job);
-    } catch (const Cancelled&) {
-        throw;
-    } catch (...) {
-        releaseEngine(); // it is not trusted again
-        throw;
-    }
+    });
 }
 
 } // namespace pellucid

@@ -88,7 +88,7 @@ TEST_CASE("variables that cannot be are told with their option", "[cli][variable
     fails({"--variable", "a:b=sample:shells"}, "colon");
     fails({"--variable", "g=gradient:z"}, "no variable 'z'");
     fails({"--hsb", "brightness=y"}, "no variable 'y'");
-    fails({"--hsb", "darkness=x"}, "there is no 'darkness'");
+    fails({"--hsb", "darkness=x"}, "there is no channel 'darkness'");
     fails({"--hsb", "brightness"}, "sets nothing");
     fails({"--hsb", "a=-1"}, "--hsb");
     fails({"--hsb", "saturation=volatility:x:0"}, "out of range");

@@ -44,15 +44,13 @@ ViewAngles parseView(const std::string& text, const std::string& option) {
 
 void CameraOptions::add(CLI::App& app) {
     m_added = true;
-    addValue(
-        app, "--camera", "FILE", [this](const std::string& text, const std::string&) { file = text; },
-        "camera file (JSON)", kGroup);
+    addValue(app, "--camera", "FILE", file, anyText, "camera file (JSON)", kGroup);
     addValue(
         app, "--view", std::string("AZIMUTH,ELEVATION[,ZOOM]|SIDE[,ZOOM]") + (mayBeBest ? "|best" : ""),
         [this](const std::string& text, const std::string& option) {
             best = text == "best";
             if (best && !mayBeBest)
-                throw UsageError("no best view is looked for here", option,
+                throw UsageError("this command does not look for the best view", option,
                                  "ask pellucid-cli views for it, or optimize with --view best");
             if (best) return;
             namedView = parseNamedView(text, option);

@@ -10,8 +10,7 @@ constexpr const char* kOption = "--clip";
 
 void ClipOptions::add(CLI::App& app) {
     addRepeated(
-        app, kOption, "x:A:B|NX,NY,NZ,D",
-        [this](const std::string& text, const std::string& option) { clips.push_back(parseClip(text, option)); },
+        app, kOption, "x:A:B|NX,NY,NZ,D", clips, parseClip,
         "look at this part of the box alone, along x, y or z of its grid in fractions from 0 to 1; or at the points p "
         "of the world with NX*px + NY*py + NZ*pz <= D. What is cut away has opacity 0 in pictures and figures",
         "View");

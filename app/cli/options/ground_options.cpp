@@ -16,9 +16,7 @@ RawLayout parseGroundLayout(const std::string& text, const std::string& option) 
         throw UsageError("'" + text + "' is not a layout of heights", option,
                          "give NX,NY,TYPE[,little|big], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64");
     parts.insert(parts.begin() + 2, "1");
-    std::string layers;
-    for (const std::string& part : parts) layers += (layers.empty() ? "" : ",") + part;
-    return atOption(option + " " + text, [&] { return parseRawLayout(layers); });
+    return atOption(option + " " + text, [&] { return parseRawLayout(joined(parts, ",")); });
 }
 
 } // namespace
@@ -33,10 +31,8 @@ void GroundOptions::add(CLI::App& app) {
         "a height field under the volume, over its whole box along x and y: a volume file of one layer, or "
         "sample:hurricane/ground; none: not that of the session",
         kGroup);
-    addValue(
-        app, "--ground-raw", "NX,NY,TYPE[,ENDIAN]",
-        [this](const std::string& text, const std::string& option) { raw = parseGroundLayout(text, option); },
-        "the file of the ground is headerless, see --raw", kGroup);
+    addValue(app, "--ground-raw", "NX,NY,TYPE[,ENDIAN]", raw, parseGroundLayout,
+             "the file of the ground is headerless, see --raw", kGroup);
     given.add(app, kGroup);
 }
 

@@ -15,13 +15,6 @@ namespace {
 /// What --light takes: the settings that count where there is light.
 constexpr std::array kParts{"ambient", "diffuse", "specular", "shininess"};
 
-std::string presetNames(const char* separator) {
-    std::string names;
-    for (const LightPreset& preset : lightPresets())
-        names += (names.empty() ? "" : separator) + std::string(preset.name);
-    return names;
-}
-
 Vec3 parseDirection(const std::string& text, const std::string& option) {
     const std::vector<double> v = parseReals(text, option, 3, "X,Y,Z: right, up and toward the viewer");
     const Vec3 direction{v[0], v[1], v[2]};
@@ -39,10 +32,7 @@ void LightOptions::takeParts(const std::string& text, const std::string& option)
         if (pair.size() != 2) throw UsageError("'" + part + "' is not a part of the light", option, form);
         if (std::find(kParts.begin(), kParts.end(), pair[0]) == kParts.end())
             throw UsageError("the light has no part called '" + pair[0] + "'", option, form);
-        atOption(option, [&] {
-            given.take(settingOf(settingsOf<Light>(), pair[0]), pair[1]);
-            return 0;
-        });
+        atOption(option, [&] { given.take(settingOf(settingsOf<Light>(), pair[0]), pair[1]); });
     }
 }
 
@@ -52,7 +42,7 @@ void LightOptions::add(CLI::App& app) {
         ->group(group);
     app.add_flag("--no-shading", noShading, "none, whatever the session says")->group(group);
     addValue(
-        app, "--light-preset", presetNames("|"),
+        app, "--light-preset", joined(lightPresets(), "|", &LightPreset::name),
         [this](const std::string& text, const std::string& option) {
             preset = atOption(option, [&] { return std::string(lightPreset(text).name); });
         },
@@ -62,10 +52,8 @@ void LightOptions::add(CLI::App& app) {
         [this](const std::string& text, const std::string& option) { takeParts(text, option); },
         "any of ambient, diffuse, specular (0 to 2; default 0.35, 0.65, 0.25) and shininess (1 to 1000; default 24)",
         group);
-    addValue(
-        app, "--light-direction", "X,Y,Z",
-        [this](const std::string& text, const std::string& option) { direction = parseDirection(text, option); },
-        "where it comes from: right, up and toward the viewer (default 0,0,1, from the eye)", group);
+    addValue(app, "--light-direction", "X,Y,Z", direction, parseDirection,
+             "where the light comes from: right, up and toward the viewer (default 0,0,1, from the eye)", group);
     given.add(app, group, {"gradient_opacity", "occlusion", "depth_cue", "silhouettes"});
 }
 

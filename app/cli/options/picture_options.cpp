@@ -3,10 +3,7 @@
 namespace pellucid::cli {
 
 void PictureOptions::add(CLI::App& app, Mode modeIs) {
-    addValue(
-        app, "--size", "WxH",
-        [this](const std::string& text, const std::string& option) { size = parseImageSize(text, option); },
-        "pixels (default 512x512)");
+    addValue(app, "--size", "WxH", size, parseImageSize, "pixels (default 512x512)");
     addValue(
         app, "--background", "COLOR|TOP/BOTTOM|transparent",
         [this](const std::string& text, const std::string& option) {
@@ -14,17 +11,14 @@ void PictureOptions::add(CLI::App& app, Mode modeIs) {
             if (!transparent) background = parseBackground(text, option);
         },
         "components R,G,B from 0 to 1 or #rrggbb, two of them for a gradient, or transparent (default 0,0,0)");
-    addValue(
-        app, "--step", "D",
-        [this](const std::string& text, const std::string& option) { step = parseRealAbove(text, option, 0, 16); },
-        "distance of samples in reference lengths, the smallest voxel spacing (default 0.5, and less where "
-        "--finest-step says so)");
+    addValue(app, "--step", "D", step, realAbove(0, 16),
+             "distance of samples in reference lengths, the smallest voxel spacing (default 0.5, and less where "
+             "--finest-step says so)");
     given.add(app, "Options", {"finest_step"});
     if (modeIs == Mode::Option) given.add(app, "Options", {"mode"});
     app.add_flag("--jitter", jitter, "shift the samples of each pixel, against bands of colour");
-    addValue(
-        app, "--feature", "NAME", [this](const std::string& text, const std::string&) { feature = text; },
-        "draw the voxels of this feature alone, or of a field what it is in them");
+    addValue(app, "--feature", "NAME", feature, anyText,
+             "draw the voxels of this feature alone; of a field, its values in these voxels");
     light.add(app);
 }
 

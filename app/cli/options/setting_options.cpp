@@ -9,17 +9,11 @@ namespace pellucid::cli {
 
 namespace {
 
-bool isNumber(const SettingValue& value) {
-    return std::holds_alternative<int*>(value) || std::holds_alternative<double*>(value) ||
-           std::holds_alternative<std::optional<double>*>(value);
-}
-
 std::string placeholderOf(const Setting& setting, const void* usual) {
     const SettingValue value = setting.at(const_cast<void*>(usual));
     std::string text = "X";
     if (const auto* choice = std::get_if<Choice>(&value)) {
-        text.clear();
-        for (const char* name : choice->names) text += (text.empty() ? "" : "|") + std::string(name);
+        text = joined(choice->names, "|");
     } else if (std::holds_alternative<int*>(value)) {
         text = "N";
     } else if (std::holds_alternative<std::string*>(value)) {
@@ -40,9 +34,8 @@ std::string helpOf(const Setting& setting, const void* usual) {
     const SettingValue value = setting.at(const_cast<void*>(usual));
     if (std::holds_alternative<bool*>(value))
         return setting.optionName().starts_with("--no-") ? "do not " + help : help;
-    const std::string unit = *setting.unit == '\0' ? "" : std::string(" ") + setting.unit;
     std::string notes;
-    if (isNumber(value)) notes = setting.range.text() + unit;
+    if (isNumber(value)) notes = setting.range.text() + setting.unitText();
     const auto* number = std::get_if<double*>(&value);
     if (const std::string text = number != nullptr ? plainText(**number) : textOf(setting, usual); !text.empty())
         notes += (notes.empty() ? "" : "; ") + ("default " + text);
@@ -67,10 +60,7 @@ CLI::Option* addSetting(CLI::App& app, const Setting& setting, void* values, std
     return addValue(
         app, name, placeholderOf(setting, values),
         [&setting, values, &given](const std::string& text, const std::string& option) {
-            atOption(option, [&] {
-                setText(setting, values, text);
-                return 0;
-            });
+            atOption(option, [&] { setText(setting, values, text); });
             given.push_back(&setting);
         },
         helpOf(setting, values), group);

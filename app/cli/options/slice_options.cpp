@@ -14,23 +14,20 @@ SliceOptions::At parseSlice(const std::string& text, const std::string& option) 
     if (axis == std::string::npos)
         throw UsageError("'" + text + "' is no slice", option,
                          "give x:P, y:P or z:P with P from 0 to 1, a fraction of the box");
-    return {static_cast<int>(axis), parseReal(text.substr(2), option, 0, 1)};
+    return {static_cast<int>(axis), parseRealFrom(text.substr(2), option, 0, 1)};
 }
 
 } // namespace
 
 void SliceOptions::add(CLI::App& app) {
     addValue(
-        app, "--slice", "x|y|z:P",
-        [this](const std::string& text, const std::string& option) { at = parseSlice(text, option); },
+        app, "--slice", "x|y|z:P", at, parseSlice,
         "a plane of the grid in place of the view: perpendicular to its axis x, y or z, at the fraction P of the box "
         "from 0 to 1, in the colours of the transfer function over grey. Of a patient as radiologists are used to: "
         "anterior or superior up, left at the right, in sagittal slices anterior at the left",
         kGroup);
-    addValue(
-        app, "--window", "LO,HI",
-        [this](const std::string& text, const std::string& option) { window = parseRange(text, option); },
-        "values that are black and white in a slice (default: the session's, else the intensity range)", kGroup);
+    addValue(app, "--window", "LO,HI", window, parseRange,
+             "values that are black and white in a slice (default: the session's, else the intensity range)", kGroup);
     given.add(app, kGroup);
     app.add_flag("--nearest", nearest, "each pixel of a slice has the value of the nearest voxel (default: linear)")
         ->group(kGroup);

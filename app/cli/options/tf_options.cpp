@@ -6,30 +6,6 @@
 
 namespace pellucid::cli {
 
-namespace {
-
-std::string colorMapNames() {
-    std::string names;
-    for (const ColorMap& map : colorMaps()) names += (names.empty() ? "" : ", ") + map.name;
-    return names;
-}
-
-/// All features of that name, ascending. Throws UsageError where there is none.
-std::vector<int> featuresNamed(const TransferFunction& tf, const std::string& name, const char* option) {
-    std::vector<int> found;
-    std::string known;
-    for (std::size_t i = 0; i < tf.features.size(); ++i) {
-        if (tf.features[i].name == name) found.push_back(static_cast<int>(i));
-        known += (known.empty() ? "'" : ", '") + tf.features[i].name + "'";
-    }
-    if (found.empty())
-        throw UsageError("no feature is named '" + name + "'", option,
-                         known.empty() ? "leave it out: this transfer function has none" : "known: " + known);
-    return found;
-}
-
-} // namespace
-
 void TfOptions::addSource(CLI::App& app) {
     addValue(
         app, "--tf", "FILE|auto|tents:N[:PEAK]|ramp:N|preset:NAME",
@@ -45,7 +21,8 @@ void TfOptions::addSource(CLI::App& app) {
         "Volume");
 }
 
-void TfOptions::addEdits(CLI::App& app) {
+void TfOptions::add(CLI::App& app) {
+    addSource(app);
     const char* const group = "Transfer function";
     addValue(
         app, "--colormap", "NAME[,reverse][,invert][,features]",
@@ -65,30 +42,27 @@ void TfOptions::addEdits(CLI::App& app) {
                                      "use reverse, invert or features");
             }
         },
-        "colours by intensity from a map: " + colorMapNames() +
+        "colours by intensity from a map: " + joined(colorMaps(), ", ", &ColorMap::name) +
             "; reverse: from its end to its start, invert: light for dark, features: one colour for each",
         group);
-    addValue(
-        app, "--density", "K",
-        [this](const std::string& text, const std::string& option) { density = parseReal(text, option, 1e-3, 1e3); },
-        "multiply the extinction: 2 makes everything twice as dense, 0.5 half", group);
-    addRepeated(
-        app, "--hide", "NAME", [this](const std::string& text, const std::string&) { hide.push_back(text); },
-        "close the eye of this feature: it is neither drawn nor measured", group);
-    addRepeated(
-        app, "--only", "NAME", [this](const std::string& text, const std::string&) { only.push_back(text); },
-        "close the eyes of all other features", group);
+    addValue(app, "--density", "K", density, realFrom(1e-3, 1e3),
+             "multiply the extinction: 2 makes everything twice as dense, 0.5 half", group);
+    addRepeated(app, "--hide", "NAME", hide, anyText, "close the eye of this feature: it is neither drawn nor measured",
+                group);
+    addRepeated(app, "--only", "NAME", only, anyText, "close the eyes of all other features", group);
 }
 
 void TfOptions::applyTo(Scene& scene) const {
     TransferFunction tf = scene.tf;
-    if (!only.empty()) {
+    const auto setHidden = [&tf](const std::vector<std::string>& names, const char* option, bool hidden) {
+        for (const std::string& name : names)
+            for (const std::size_t i : parseFeatures(name, option, tf))
+                tf = withFeatureHidden(tf, static_cast<int>(i), hidden);
+    };
+    if (!only.empty())
         for (Feature& f : tf.features) f.hidden = true;
-        for (const std::string& name : only)
-            for (const int i : featuresNamed(tf, name, "--only")) tf = withFeatureHidden(tf, i, false);
-    }
-    for (const std::string& name : hide)
-        for (const int i : featuresNamed(tf, name, "--hide")) tf = withFeatureHidden(tf, i, true);
+    setHidden(only, "--only", false);
+    setHidden(hide, "--hide", true);
     if (colorMap != nullptr) tf = withColorMap(tf, *colorMap, colorMapOptions);
     tf = withDensity(tf, density);
     if (tf == scene.tf) return;

@@ -20,12 +20,8 @@ struct TfOptions {
     double density = 1;
     std::vector<std::string> hide, only; ///< names of features
 
-    void add(CLI::App& app) {
-        addSource(app);
-        addEdits(app);
-    }
-    void addSource(CLI::App& app); ///< --tf
-    void addEdits(CLI::App& app);  ///< the others
+    void add(CLI::App& app);
+    void addSource(CLI::App& app); ///< --tf alone
     void applyTo(SceneInputs& inputs) const { inputs.tf = spec; }
     /// The edits, to the transfer function that is open. Throws UsageError for a name that no feature has.
     void applyTo(Scene& scene) const;

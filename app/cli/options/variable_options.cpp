@@ -57,8 +57,7 @@ void requireVariable(const Session& session, std::string name, const char* optio
     while (session.variableNamed(name) == nullptr) {
         const auto derivation = atOption(option, [&] { return parseDerivation(name); });
         if (!derivation) {
-            std::string known;
-            for (const Variable& v : *session.variables) known += (known.empty() ? "" : ", ") + v.name;
+            const std::string known = joined(*session.variables, ", ", &Variable::name);
             throw UsageError("there is no variable '" + name + "'", option, "the variables are " + known);
         }
         name = derivation->of;
@@ -71,10 +70,10 @@ void set(Session& session, const std::string& key, const std::string& value) {
         setChannel(session, which, value);
     };
     HsbMapping hsb = *session.hsb;
-    const auto degrees = [&] { return parseReal(value, kHsb, -360, 360); };
+    const auto degrees = [&] { return parseRealFrom(value, kHsb, -360, 360); };
     const auto scale = [&]() -> std::optional<double> {
         if (value == "auto") return {};
-        return parseReal(value, kHsb, 0, kLargestScale);
+        return parseRealFrom(value, kHsb, 0, kLargestScale);
     };
     if (key == "alpha") return channel(Channel::Opacity);
     if (key == "saturation" || key == "brightness" || key == "hue") {
@@ -99,7 +98,7 @@ void set(Session& session, const std::string& key, const std::string& value) {
     } else if (key == "b") {
         hsb.b = scale();
     } else {
-        throw UsageError("there is no '" + key + "'", kHsb, kHsbForm);
+        throw UsageError("there is no channel '" + key + "'", kHsb, kHsbForm);
     }
     session.hsb.set(std::move(hsb));
 }
@@ -107,18 +106,13 @@ void set(Session& session, const std::string& key, const std::string& value) {
 } // namespace
 
 void VariableOptions::add(CLI::App& app) {
-    app.add_option_function<std::vector<std::string>>(
-           "--variable",
-           [this](const std::vector<std::string>& texts) {
-               for (const std::string& text : texts) variables.push_back(parseNamed(text, "--variable"));
-           },
-           "another variable beside VOLUME, which is x: a file or series like VOLUME (--raw and --missing are of all), "
-           "or made of another one: gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME; repeatable")
-        ->type_name("NAME=SPEC")
-        ->allow_extra_args(false)
-        ->group(kGroup);
+    addRepeated(
+        app, "--variable", "NAME=SPEC", variables, parseNamed,
+        "another variable beside VOLUME, which is x: a file or series like VOLUME (--raw and --missing are of all), "
+        "or made of another one: gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME; repeatable",
+        kGroup);
     addValue(
-        app, kHsb, "CHANNELS", [this](const std::string& text, const std::string&) { hsb = text; },
+        app, kHsb, "CHANNELS", hsb, anyText,
         "colours by variables in place of the transfer function's: alpha=, saturation=, brightness=, hue= (a variable, "
         "of hue degrees too), hue-from=, hue-to= (degrees), a=, b= (scales of saturation and darkness, default auto) "
         "with commas between; auto: volatility of 10 frames and the second variable; off",
@@ -157,10 +151,10 @@ void VariableOptions::applyTo(SceneInputs& inputs) const {
     session.hsb.edit([](HsbMapping& h) { h.on = true; });
 }
 
-Json jsonFromMapping(const Scene& scene) {
-    if (!scene.colors) return nullptr;
+void addMapping(Json& result, const Scene& scene) {
+    if (!scene.colors) return;
     const HsbMapping& hsb = *scene.session.hsb;
-    Json json{{"alpha", scene.session.variable().name}};
+    Json& json = result["hsb"] = {{"alpha", scene.session.variable().name}};
     if (!hsb.saturation.empty()) {
         json["saturation"] = hsb.saturation;
         json["a"] = scene.hsbA;
@@ -176,7 +170,6 @@ Json jsonFromMapping(const Scene& scene) {
         json["hue_from"] = hsb.hueFrom;
         json["hue_to"] = hsb.hueTo;
     }
-    return json;
 }
 
 } // namespace pellucid::cli

@@ -26,8 +26,8 @@ struct VariableOptions {
     void applyTo(SceneInputs& inputs) const;
 };
 
-/// {"alpha":"x","saturation":"volatility:x:10","a":12.5,…} with the scales that were used; null where colours are those
-/// of the transfer function.
-Json jsonFromMapping(const Scene& scene);
+/// Adds "hsb": {"alpha":"x","saturation":"volatility:x:10","a":12.5,…}, with the scales that were used, to the result
+/// of a command; nothing where colours are those of the transfer function.
+void addMapping(Json& result, const Scene& scene);
 
 } // namespace pellucid::cli

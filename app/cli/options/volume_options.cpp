@@ -20,31 +20,6 @@ Vec3 parseSpacing(const std::string& text, const std::string& option) {
     return {v[0], v[1], v[2]};
 }
 
-/// "X0:X1,Y0:Y1,Z0:Z1".
-VoxelRegion parseRegion(const std::string& text, const std::string& option) {
-    VoxelRegion region;
-    const auto fail = [&] {
-        return UsageError("'" + text + "' is no region", option,
-                          "give X0:X1,Y0:Y1,Z0:Z1, the first voxel along each axis and the one after the last");
-    };
-    std::size_t at = 0;
-    for (int a = 0; a < 3; ++a) {
-        const std::size_t end = a < 2 ? text.find(',', at) : text.size();
-        if (end == std::string::npos) throw fail();
-        const std::string part = text.substr(at, end - at);
-        const std::size_t colon = part.find(':');
-        std::int64_t lo = 0, hi = 0;
-        constexpr std::int64_t kMost = std::numeric_limits<int>::max();
-        if (colon == std::string::npos || !parseNumber(part.substr(0, colon), lo) ||
-            !parseNumber(part.substr(colon + 1), hi) || lo < 0 || hi <= lo || hi > kMost)
-            throw fail();
-        region.lo[a] = static_cast<int>(lo);
-        region.hi[a] = static_cast<int>(hi);
-        at = end + 1;
-    }
-    return region;
-}
-
 /// "A:B[:STEP]", both ends included; A or B may be left out.
 FrameRange parseFrames(const std::string& text, const std::string& option) {
     const std::vector<std::string> parts = split(text, ':');
@@ -64,27 +39,19 @@ FrameRange parseFrames(const std::string& text, const std::string& option) {
 } // namespace
 
 void VolumeOptions::add(CLI::App& app, SizeIs size) {
-    m_command = "pellucid-cli " + app.get_name();
+    m_command = app.get_name();
     app.add_option_function<std::string>(
            "VOLUME", [this](const std::string& text) { path = text; },
            "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVD) or (with --raw) headerless file, or sample:NAME; a series: "
-           "a "
-           "file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
+           "a file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
            "--session")
         ->type_name("");
-    addValue(
-        app, "--frames", "A:B[:STEP]",
-        [this](const std::string& text, const std::string& option) { frames = parseFrames(text, option); },
-        "only these frames of a series, from 0, B included; A or B may be left out", kGroup);
-    addValue(
-        app, "--frame", "N",
-        [this](const std::string& text, const std::string& option) {
-            frame = static_cast<int>(parseInteger(text, option, 0, std::numeric_limits<int>::max()));
-        },
-        "the frame to work on, from 0, of those that --frames selects (default: the session's, else 0)", kGroup);
-    addValue(
-        app, "--array", "NAME", [this](const std::string& text, const std::string&) { array = text; },
-        "array of a file with several (default: its active scalars, else the first)", kGroup);
+    addValue(app, "--frames", "A:B[:STEP]", frames, parseFrames,
+             "only these frames of a series, from 0, B included; A or B may be left out", kGroup);
+    addValue(app, "--frame", "N", frame, wholeFrom(0, std::numeric_limits<int>::max()),
+             "the frame to work on, from 0, of those that --frames selects (default: the session's, else 0)", kGroup);
+    addValue(app, "--array", "NAME", array, anyText,
+             "array of a file with several (default: its active scalars, else the first)", kGroup);
     addValue(
         app, "--cache", "MIB",
         [this](const std::string& text, const std::string& option) {
@@ -98,62 +65,44 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
             raw = atOption(option + " " + text, [&] { return parseRawLayout(text); });
         },
         "the file is headerless; TYPE is u8 i8 u16 i16 u32 i32 f32 f64, ENDIAN little (default) or big", kGroup);
-    addValue(
-        app, "--spacing", "SX,SY,SZ",
-        [this](const std::string& text, const std::string& option) { spacing = parseSpacing(text, option); },
-        "voxel distances of --raw data in world units (default 1,1,1)", kGroup);
-    addValue(
-        app, "--skip", "BYTES",
-        [this](const std::string& text, const std::string& option) {
-            skipBytes =
-                static_cast<std::uint64_t>(parseInteger(text, option, 0, std::numeric_limits<long long>::max()));
-        },
-        "bytes before the --raw data", kGroup);
-    addValue(
-        app, "--missing", "VALUE",
-        [this](const std::string& text, const std::string& option) { missing = parseReal(text, option); },
-        "voxels of this value are invalid: never drawn, never counted", kGroup);
-    addValue(
-        app, "--range", "LO,HI",
-        [this](const std::string& text, const std::string& option) { range = parseRange(text, option); },
-        "the values of intensity 0 and 1 (default: those of the TF file, else of the session, else smallest and "
-        "largest value)",
-        kGroup);
-    addValue(
-        app, "--component", "N",
-        [this](const std::string& text, const std::string& option) {
-            component = static_cast<int>(parseInteger(text, option, 0, 1'000'000));
-        },
-        "component of a multi-component file, from 0", kGroup);
-    addValue(
-        app, size == SizeIs::Sample ? "--size,--sample-size" : "--sample-size", "N",
-        [this](const std::string& text, const std::string& option) { takeSampleSize(text, option); },
-        "voxels along the longest axis of a sample", kGroup);
-    addValue(
-        app, "--seed", "N",
-        [this](const std::string& text, const std::string& option) {
-            seed = static_cast<std::uint32_t>(parseInteger(text, option, 0, std::numeric_limits<std::uint32_t>::max()));
-        },
-        "seed of a sample's noise (default 1)", kGroup);
-    addValue(
-        app, "--downsample", "N",
-        [this](const std::string& text, const std::string& option) {
-            downsample = static_cast<int>(parseInteger(text, option, 1, 65536));
-        },
-        "each voxel is the mean of N along each axis (default: 1, or the least that memory has room for)", kGroup);
+    addValue(app, "--spacing", "SX,SY,SZ", spacing, parseSpacing,
+             "voxel distances of --raw data in world units (default 1,1,1)", kGroup);
+    addValue(app, "--skip", "BYTES", skipBytes, wholeFrom<std::uint64_t>(0, std::numeric_limits<long long>::max()),
+             "bytes before the --raw data", kGroup);
+    addValue(app, "--missing", "VALUE", missing, parseReal,
+             "voxels of this value are invalid: never drawn, never counted", kGroup);
+    addValue(app, "--range", "LO,HI", range, parseRange,
+             "the values of intensity 0 and 1 (default: those of the TF file, else of the session, else smallest and "
+             "largest value)",
+             kGroup);
+    addValue(app, "--component", "N", component, wholeFrom(0, 1'000'000), "component of a multi-component file, from 0",
+             kGroup);
+    addValue(app, size == SizeIs::Sample ? "--size,--sample-size" : "--sample-size", "N", sampleSize, parseSampleSize,
+             "voxels along the longest axis of a sample", kGroup);
+    addValue(app, "--seed", "N", seed, wholeFrom<std::uint32_t>(0, std::numeric_limits<std::uint32_t>::max()),
+             "seed of a sample's noise (default 1)", kGroup);
+    addValue(app, "--downsample", "N", downsample, wholeFrom(1, 65536),
+             "each voxel is the mean of N along each axis (default: 1, or the least that memory has room for)", kGroup);
     if (size != SizeIs::Both)
-        addValue(
-            app, "--region", "X0:X1,Y0:Y1,Z0:Z1",
-            [this](const std::string& text, const std::string& option) { takeRegion(text, option); },
-            "only these voxels of the data, from the first to the one before the second", kGroup);
+        addValue(app, "--region", "X0:X1,Y0:Y1,Z0:Z1", region, parseVoxelRegion,
+                 "only these voxels of the data, from the first to the one before the second", kGroup);
 }
 
-void VolumeOptions::takeSampleSize(const std::string& text, const std::string& option) {
-    sampleSize = static_cast<int>(parseInteger(text, option, 8, 65536));
-}
-
-void VolumeOptions::takeRegion(const std::string& text, const std::string& option) {
-    region = parseRegion(text, option);
+VoxelRegion parseVoxelRegion(const std::string& text, const std::string& option) {
+    constexpr std::int64_t kMost = std::numeric_limits<int>::max();
+    VoxelRegion region;
+    const std::vector<std::string> axes = split(text, ',');
+    for (int a = 0; a < 3; ++a) {
+        const std::vector<std::string> ends = split(axes.size() == 3 ? axes[static_cast<std::size_t>(a)] : "", ':');
+        std::int64_t lo = 0, hi = 0;
+        if (ends.size() != 2 || !parseNumber(ends[0], lo) || !parseNumber(ends[1], hi) || lo < 0 || hi <= lo ||
+            hi > kMost)
+            throw UsageError("'" + text + "' is no region", option,
+                             "give X0:X1,Y0:Y1,Z0:Z1, the first voxel along each axis and the one after the last");
+        region.lo[a] = static_cast<int>(lo);
+        region.hi[a] = static_cast<int>(hi);
+    }
+    return region;
 }
 
 bool VolumeOptions::anyDetail() const {
@@ -165,7 +114,7 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     Session& session = inputs.session;
     if (path && path->empty())
         throw UsageError("the name of the volume is empty", "VOLUME", "name a file or sample:NAME");
-    if (!path && session.isEmpty()) throw UsageError("VOLUME is required", m_command, "see " + m_command + " --help");
+    if (!path && session.isEmpty()) throw isRequired("VOLUME", m_command);
 
     VolumeSource source;
     if (path)
@@ -173,12 +122,12 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     else
         source = session.variable().source;
     if (raw) source.raw = raw;
-    if (spacing && !source.raw) throw UsageError("--spacing is for headerless data", "--spacing", "give --raw as well");
-    if (skipBytes && !source.raw) throw UsageError("--skip is for headerless data", "--skip", "give --raw as well");
-    if (source.isSample() && source.raw)
-        throw UsageError("a built-in sample has no headerless file", "--raw", "leave it out");
-    if (sampleSize && !source.isSample())
-        throw UsageError("only built-in samples come in any size", "--sample-size", "leave it out or use sample:NAME");
+    const bool isSample = source.isSample();
+    refuse({{spacing && !source.raw, "--spacing is for headerless data", "--spacing", "give --raw as well"},
+            {skipBytes && !source.raw, "--skip is for headerless data", "--skip", "give --raw as well"},
+            {isSample && source.raw, "a built-in sample has no headerless file", "--raw", "leave it out"},
+            {sampleSize && !isSample, "only built-in samples come in any size", "--sample-size",
+             "leave it out or use sample:NAME"}});
     if (spacing) source.raw->spacing = *spacing;
     if (skipBytes) source.raw->skipBytes = *skipBytes;
     if (missing) source.missing = missing;

@@ -8,9 +8,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "parse.h"
 #include "session/scene.h"
 
 namespace pellucid::cli {
+
+inline const auto parseSampleSize = wholeFrom(8, 65536); ///< voxels along the longest axis
+/// "X0:X1,Y0:Y1,Z0:Z1".
+VoxelRegion parseVoxelRegion(const std::string& text, const std::string& option);
 
 struct VolumeOptions {
     std::optional<std::string> path;
@@ -30,11 +35,9 @@ struct VolumeOptions {
     std::optional<std::uint32_t> seed;
 
     /// --size is a second name of --sample-size, except in commands whose --size is an image's. A command that looks at
-    /// an image only sometimes has both: it takes --size and --region itself, and hands on what is meant for a volume.
+    /// an image only sometimes has both: it takes --size and --region itself, and sets here what is meant for a volume.
     enum class SizeIs { Sample, Image, Both };
     void add(CLI::App& app, SizeIs size = SizeIs::Sample);
-    void takeSampleSize(const std::string& text, const std::string& option); ///< "N"
-    void takeRegion(const std::string& text, const std::string& option);     ///< "X0:X1,Y0:Y1,Z0:Z1"
     /// Whether any of them but VOLUME is given.
     bool anyDetail() const;
     /// VOLUME replaces the source of the session; the others change it. Throws UsageError where there is none, and for
@@ -42,7 +45,7 @@ struct VolumeOptions {
     void applyTo(SceneInputs& inputs) const;
 
 private:
-    std::string m_command; ///< "pellucid-cli measure"
+    std::string m_command; ///< its name
 };
 
 } // namespace pellucid::cli
