@@ -75,6 +75,12 @@ Camera turned(Camera camera, double angle) {
     return camera;
 }
 
+OptimizeResult resultOf(const OptimizeProblem& problem, const OptimizeOptions& options, const JobControl& job) {
+    OptimizeResult result = optimize(problem, options, job);
+    if (result.reason == StopReason::Cancelled) throw Cancelled{};
+    return result;
+}
+
 double bytesPerVoxel(const WeightFields& weights) {
     return weights.empty() ? 0.0 : static_cast<double>(sizeof(*weights.data()));
 }
@@ -93,25 +99,26 @@ class CaseBench {
 public:
     CaseBench(const BenchCase& of, const BenchOptions& options, const JobControl& job)
         : m_case(of), m_options(options) {
-        const auto wanted = [&](BenchRow row) { return of.rows.count(row) > 0; };
-        const bool measured = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize) ||
-                              wanted(BenchRow::OptimizeNewton) || wanted(BenchRow::OptimizeWhole);
-        const bool weighted = measured || wanted(BenchRow::Slices);
-        if (measured || wanted(BenchRow::Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
-        if (wanted(BenchRow::Setup)) addSetup();
-        if (wanted(BenchRow::Saliency)) addSaliency(BenchRow::Saliency, updateSaliencyFields);
-        if (wanted(BenchRow::SaliencyDirect)) addSaliency(BenchRow::SaliencyDirect, updateSaliencyFieldsDirect);
+        using enum BenchRow;
+        const auto wanted = [&](BenchRow row) { return of.rows.contains(row); };
+        const bool measured =
+            wanted(Sweep) || wanted(Jacobian) || wanted(Optimize) || wanted(OptimizeNewton) || wanted(OptimizeWhole);
+        const bool weighted = measured || wanted(Slices);
+        if (measured || wanted(Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
+        if (wanted(Setup)) addSetup();
+        if (wanted(Saliency)) addSaliency(Saliency, updateSaliencyFields);
+        if (wanted(SaliencyDirect)) addSaliency(SaliencyDirect, updateSaliencyFieldsDirect);
         if (weighted) m_weights = saliencyFields(*of.volume, of.tf, {}, job);
-        if (wanted(BenchRow::Sweep)) addSweeps(job);
-        if (wanted(BenchRow::Slices)) addSlices();
-        if (wanted(BenchRow::Jacobian)) addJacobians(job);
-        if (wanted(BenchRow::Optimize)) addOptimize();
-        if (wanted(BenchRow::OptimizeNewton)) addNewton(job);
-        if (wanted(BenchRow::OptimizeWhole)) addWhole();
-        if (wanted(BenchRow::Refine)) addRefine();
-        if (wanted(BenchRow::Refine500)) addPaletteClick(BenchRow::Refine500, refine);
-        if (wanted(BenchRow::RefineDirect)) addPaletteClick(BenchRow::RefineDirect, refineReference);
-        if (wanted(BenchRow::Render)) addRender();
+        if (wanted(Sweep)) addSweeps(job);
+        if (wanted(Slices)) addSlices();
+        if (wanted(Jacobian)) addJacobians(job);
+        if (wanted(Optimize)) addOptimize();
+        if (wanted(OptimizeNewton)) addNewton(job);
+        if (wanted(OptimizeWhole)) addWhole();
+        if (wanted(Refine)) addRefine();
+        if (wanted(Refine500)) addPaletteClick(Refine500, refine);
+        if (wanted(RefineDirect)) addPaletteClick(RefineDirect, refineReference);
+        if (wanted(Render)) addRender();
     }
     CaseBench(const CaseBench&) = delete; // the measurements refer to it
     CaseBench& operator=(const CaseBench&) = delete;
@@ -215,8 +222,7 @@ private:
             const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
             OptimizeOptions search;
             search.method = SearchMethod::Parallel;
-            const OptimizeResult found = optimize({function, benchTargets(m_case.tf.features.size())}, search, j);
-            if (found.reason == StopReason::Cancelled) throw Cancelled{};
+            const OptimizeResult found = resultOf({function, benchTargets(m_case.tf.features.size())}, search, j);
             const int sweeps = 1 + (found.evaluations - 1) / 8; // the start, then eight at a time
             r.bytes = sweeps * sweepBytes();
             r.extra = {{"iterations", found.iterations()},
@@ -243,8 +249,7 @@ private:
                 const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
                 OptimizeProblem problem{function, benchTargets(m_case.tf.features.size())};
                 problem.estimates = estimates;
-                const OptimizeResult found = optimize(problem, {}, j);
-                if (found.reason == StopReason::Cancelled) throw Cancelled{};
+                const OptimizeResult found = resultOf(problem, {}, j);
                 // The start, and with each move derivatives and candidates; rays cost next to nothing.
                 const int sweeps = 1 + found.iterations();
                 r.bytes = sweeps * sweepBytes();
@@ -277,8 +282,7 @@ private:
                 const RayBundle rays(*m_case.volume, m_case.tf, m_case.view, kCoverageRays, j);
                 const double raysSeconds = raysWatch.seconds();
                 problem.rays = &rays;
-                const OptimizeResult found = optimize(problem, {}, j);
-                if (found.reason == StopReason::Cancelled) throw Cancelled{};
+                const OptimizeResult found = resultOf(problem, {}, j);
                 r.extra = {{"target", name},
                            {"estimates_seconds", estimatesSeconds},
                            {"rays_seconds", raysSeconds},

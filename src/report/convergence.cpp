@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "tf/feature.h"
 
@@ -51,28 +50,6 @@ Rgb featureColor(const Run& run, std::size_t feature) {
     return feature < features.size() ? features[feature].color : curveColor(feature);
 }
 
-/// Whole decades around all values.
-void fitDecades(Plot& plot) {
-    double lo = 1, hi = kSmallestShown;
-    for (const PlotSeries& s : plot.series)
-        for (const PlotPoint& p : s.points) {
-            lo = std::min(lo, std::max(p.y, kSmallestShown));
-            hi = std::max(hi, p.y);
-        }
-    plot.y.logarithmic = true;
-    plot.y.lo = std::pow(10, std::floor(std::log10(lo) + 1e-9));
-    plot.y.hi = std::max(plot.y.lo * 10, std::pow(10, std::ceil(std::log10(hi) - 1e-9)));
-}
-
-/// From 0 to a tenth beyond the largest value.
-void fitLinear(Plot& plot, double most) {
-    double hi = 0;
-    for (const PlotSeries& s : plot.series)
-        for (const PlotPoint& p : s.points) hi = std::max(hi, p.y);
-    plot.y.lo = 0;
-    plot.y.hi = hi > 0 ? std::min(most, 1.1 * hi) : most;
-}
-
 } // namespace
 
 Rgb curveColor(std::size_t number) {
@@ -111,7 +88,7 @@ Plot objectivePlot(std::span<const RunCurve> runs, bool logarithmic) {
     for (const double tolerance : tolerances) plot.series.push_back(level(tolerance, longest, {}));
     plot.x = moveAxis(longest);
     if (runs.size() == 1) plot.bands = coarseBands(*runs.front().run);
-    logarithmic ? fitDecades(plot) : fitLinear(plot, 1);
+    logarithmic ? fitDecades(plot, kSmallestShown) : fitLinear(plot, 1);
     return plot;
 }
 
@@ -140,7 +117,7 @@ Plot opacityPlot(const Run& run, bool logarithmic) {
         plot.series.push_back(curve(run, run.features[f], featureColor(run, f),
                                     [f](const OptimizeState& state) { return at(state.opacity, f); }));
     plot.bands = coarseBands(run);
-    logarithmic ? fitDecades(plot) : fitLinear(plot, 1);
+    logarithmic ? fitDecades(plot, kSmallestShown) : fitLinear(plot, 1);
     return plot;
 }
 

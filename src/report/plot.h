@@ -47,4 +47,9 @@ struct Plot {
     bool operator==(const Plot&) const = default;
 };
 
+/// The y axis from 0 to a tenth beyond the largest value, at most to `most`.
+void fitLinear(Plot& plot, double most);
+/// A logarithmic y axis of whole decades around all values from `smallest` > 0 on.
+void fitDecades(Plot& plot, double smallest);
+
 } // namespace pellucid

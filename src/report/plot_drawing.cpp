@@ -74,18 +74,81 @@ double legendTop(const Plot& plot, const PlotPage& page) { return plot.title.emp
 int ticksAcross(const PlotPage& page) { return std::clamp(static_cast<int>(page.width / 60), 2, 12); }
 int ticksUp(const PlotPage& page) { return std::clamp(static_cast<int>(page.height / 45), 2, 8); }
 
+/// In the colour of the series, on a rim; without a colour in that of texts.
+void addLine(PlotDrawing& drawing, const std::vector<Vec2>& points, const PlotSeries& s, double width) {
+    if (s.color) drawing.strokes.push_back({points, PlotInk::Rim, {}, kRim, s.dashed});
+    drawing.strokes.push_back(
+        {points, s.color ? PlotInk::Own : PlotInk::Text, s.color.value_or(Rgb{}), width, s.dashed});
+}
+
 void addSeries(PlotDrawing& drawing, const PlotSeries& s, const PlotBox& box) {
-    const PlotInk ink = s.color ? PlotInk::Own : PlotInk::Text;
-    const Rgb color = s.color.value_or(Rgb{});
     std::vector<Vec2> points;
     for (const PlotPoint& p : s.points) points.emplace_back(box.xOf(p.x), box.yOf(p.y));
-    if (points.size() > 1) {
-        if (s.color) drawing.strokes.push_back({points, PlotInk::Rim, {}, kRim, s.dashed});
-        drawing.strokes.push_back({points, ink, color, s.dashed ? 1.2 : kCurve, s.dashed});
-    }
+    if (points.size() > 1) addLine(drawing, points, s, s.dashed ? 1.2 : kCurve);
     if (!s.dotted) return;
+    const PlotInk ink = s.color ? PlotInk::Own : PlotInk::Text;
     for (std::size_t i = 0; i < points.size(); ++i)
-        drawing.dots.push_back({points[i], kDot, ink, color, s.points[i].preliminary});
+        drawing.dots.push_back({points[i], kDot, ink, s.color.value_or(Rgb{}), s.points[i].preliminary});
+}
+
+using Anchor = PlotText::Anchor;
+
+PlotText& addText(PlotDrawing& drawing, const PlotPage& page, const Vec2& at, const std::string& text, PlotInk ink,
+                  Anchor anchor = Anchor::Start) {
+    return drawing.texts.emplace_back(PlotText{at, text, ink, anchor, page.fontSize});
+}
+
+void addTitleAndLegend(PlotDrawing& drawing, const Plot& plot, const PlotPage& page, const PlotBox& box) {
+    const double size = page.fontSize;
+    if (!plot.title.empty()) {
+        const std::string title = page.fitted(plot.title, page.width - 2 * kGap);
+        addText(drawing, page, {kGap, kGap + size}, title, PlotInk::Text).bold = true;
+    }
+    for (const LegendEntry& entry : legendOf(plot, page, box.left).entries) {
+        const double y = legendTop(plot, page) + (entry.row + 0.7) * lineHeight(page), middle = y - 0.35 * size;
+        double x = entry.x;
+        if (entry.series != nullptr) {
+            addLine(drawing, {{x, middle}, {x + kSwatch, middle}}, *entry.series, kCurve);
+            x += kSwatch + kGap;
+        }
+        addText(drawing, page, {x, y}, entry.text, PlotInk::Text);
+    }
+}
+
+void addBands(PlotDrawing& drawing, const Plot& plot, const PlotPage& page, const PlotBox& box) {
+    for (const PlotBand& band : plot.bands) {
+        const double from = box.xOf(band.from), to = box.xOf(band.to);
+        drawing.areas.push_back({{from, box.top}, {to, box.bottom}, PlotInk::Shade, {}});
+        const std::string text = page.fitted(band.text, to - from - 2);
+        if (text.size() > 6 || text == band.text) // more than an ellipsis and a letter or two
+            addText(drawing, page, {(from + to) / 2, box.top + page.fontSize}, text, PlotInk::Faint, Anchor::Middle)
+                .size *= 0.85;
+    }
+}
+
+void addAxes(PlotDrawing& drawing, const Plot& plot, const PlotPage& page, const PlotBox& box) {
+    const double size = page.fontSize;
+    const auto write = [&](const Vec2& at, const std::string& text, Anchor anchor) -> PlotText& {
+        return addText(drawing, page, at, text, PlotInk::Faint, anchor);
+    };
+    for (const double tick : ticksOf(plot.x, ticksAcross(page))) {
+        const double x = box.xOf(tick);
+        drawing.strokes.push_back({{{x, box.bottom}, {x, box.bottom + 4}}, PlotInk::Faint});
+        write({x, box.bottom + 4 + size}, tickText(plot.x, tick), Anchor::Middle);
+    }
+    for (const double tick : ticksOf(plot.y, ticksUp(page))) {
+        const double y = box.yOf(tick);
+        drawing.strokes.push_back({{{box.left, y}, {box.right, y}}, PlotInk::Grid});
+        write({box.left - kGap, y + 0.35 * size}, tickText(plot.y, tick), Anchor::End);
+    }
+    drawing.strokes.push_back({{{box.left, box.top}, {box.left, box.bottom}, {box.right, box.bottom}}, PlotInk::Faint});
+    if (!plot.x.label.empty())
+        write({(box.left + box.right) / 2, page.height - kGap}, page.fitted(plot.x.label, box.right - box.left),
+              Anchor::Middle);
+    if (!plot.y.label.empty())
+        write({kGap + size, (box.top + box.bottom) / 2}, page.fitted(plot.y.label, box.bottom - box.top),
+              Anchor::Middle)
+            .upward = true;
 }
 
 } // namespace
@@ -156,70 +219,11 @@ PlotBox boxOf(const Plot& plot, const PlotPage& page) {
 
 PlotDrawing drawingOf(const Plot& plot, const PlotPage& page) {
     const PlotBox box = boxOf(plot, page);
-    const double size = page.fontSize, line = lineHeight(page);
-    using Anchor = PlotText::Anchor;
-    PlotDrawing drawing;
-    drawing.width = page.width;
-    drawing.height = page.height;
-
-    if (!plot.title.empty())
-        drawing.texts.push_back({{kGap, kGap + size},
-                                 page.fitted(plot.title, page.width - 2 * kGap),
-                                 PlotInk::Text,
-                                 Anchor::Start,
-                                 size,
-                                 false,
-                                 true});
-    for (const LegendEntry& entry : legendOf(plot, page, box.left).entries) {
-        const double y = legendTop(plot, page) + (entry.row + 0.7) * line, middle = y - 0.35 * size;
-        if (entry.series != nullptr) {
-            const PlotInk ink = entry.series->color ? PlotInk::Own : PlotInk::Text;
-            const Rgb color = entry.series->color.value_or(Rgb{});
-            const std::vector<Vec2> swatch{{entry.x, middle}, {entry.x + kSwatch, middle}};
-            if (entry.series->color) drawing.strokes.push_back({swatch, PlotInk::Rim, {}, kRim, entry.series->dashed});
-            drawing.strokes.push_back({swatch, ink, color, kCurve, entry.series->dashed});
-        }
-        drawing.texts.push_back({{entry.x + (entry.series != nullptr ? kSwatch + kGap : 0), y},
-                                 entry.text,
-                                 PlotInk::Text,
-                                 Anchor::Start,
-                                 size});
-    }
-
-    for (const PlotBand& band : plot.bands) {
-        const double from = box.xOf(band.from), to = box.xOf(band.to);
-        drawing.areas.push_back({{from, box.top}, {to, box.bottom}, PlotInk::Shade, {}});
-        const std::string text = page.fitted(band.text, to - from - 2);
-        if (text.size() > 6 || text == band.text) // more than an ellipsis and a letter or two
-            drawing.texts.push_back(
-                {{(from + to) / 2, box.top + size}, text, PlotInk::Faint, Anchor::Middle, 0.85 * size});
-    }
-    for (const double tick : ticksOf(plot.x, ticksAcross(page))) {
-        const double x = box.xOf(tick);
-        drawing.strokes.push_back({{{x, box.bottom}, {x, box.bottom + 4}}, PlotInk::Faint});
-        drawing.texts.push_back(
-            {{x, box.bottom + 4 + size}, tickText(plot.x, tick), PlotInk::Faint, Anchor::Middle, size});
-    }
-    for (const double tick : ticksOf(plot.y, ticksUp(page))) {
-        const double y = box.yOf(tick);
-        drawing.strokes.push_back({{{box.left, y}, {box.right, y}}, PlotInk::Grid});
-        drawing.texts.push_back(
-            {{box.left - kGap, y + 0.35 * size}, tickText(plot.y, tick), PlotInk::Faint, Anchor::End, size});
-    }
-    drawing.strokes.push_back({{{box.left, box.top}, {box.left, box.bottom}, {box.right, box.bottom}}, PlotInk::Faint});
-    if (!plot.x.label.empty())
-        drawing.texts.push_back({{(box.left + box.right) / 2, page.height - kGap},
-                                 page.fitted(plot.x.label, box.right - box.left),
-                                 PlotInk::Faint,
-                                 Anchor::Middle,
-                                 size});
-    if (!plot.y.label.empty())
-        drawing.texts.push_back({{kGap + size, (box.top + box.bottom) / 2},
-                                 page.fitted(plot.y.label, box.bottom - box.top),
-                                 PlotInk::Faint,
-                                 Anchor::Middle,
-                                 size,
-                                 true});
+    PlotDrawing drawing{
+        .width = page.width, .height = page.height, .areas = {}, .strokes = {}, .dots = {}, .texts = {}};
+    addTitleAndLegend(drawing, plot, page, box);
+    addBands(drawing, plot, page, box);
+    addAxes(drawing, plot, page, box);
     // Dashed lines, which are what curves are compared with, lie below these.
     for (const bool dashed : {true, false})
         for (const PlotSeries& s : plot.series)

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/round_numbers.h"
+#include "base/text.h"
 #include "render/annotation_raster.h"
 #include "render/image_renderer.h"
 #include "render/mark_maker.h"
@@ -42,10 +43,7 @@ ValueRange shownRange(const ParameterSpace& space, int shown) {
 
 std::string titleOf(const ParameterSpace& space, const SpaceView& view) {
     if (view.shown != kObjective) return "W of " + view.names.at(static_cast<std::size_t>(view.shown));
-    std::string text = "F, targets ";
-    for (std::size_t i = 0; i < space.targets.size(); ++i)
-        text += (i > 0 ? ", " : "") + numberText(space.targets[i], 1);
-    return text;
+    return "F, targets " + joined(space.targets, ", ", [](double target) { return numberText(target, 1); });
 }
 
 MarkMaker makerOf(const SpaceView& view) {
@@ -90,11 +88,15 @@ std::vector<Row> rowsOf(const ParameterSpace& space, const SpaceView& view) {
 
 double rowHeight(const MarkMaker& make) { return 1.9 * make.capHeight; }
 
-/// A dot, as a line too short to be seen: painters give it round ends.
-Mark dot(const MarkMaker& make, const Vec2& at, double diameter, const Rgb& color) {
-    Mark mark = make.lineMark(AnnotationPart::Legend, {at, at + Vec2(0.01, 0)}, diameter);
+Mark coloredLine(const MarkMaker& make, std::vector<Vec2> points, double width, const Rgb& color) {
+    Mark mark = make.lineMark(AnnotationPart::Legend, std::move(points), width);
     mark.color = color;
     return mark;
+}
+
+/// A dot, as a line too short to be seen: painters give it round ends.
+Mark dot(const MarkMaker& make, const Vec2& at, double diameter, const Rgb& color) {
+    return coloredLine(make, {at, at + Vec2(0.01, 0)}, diameter, color);
 }
 
 Mark ring(const MarkMaker& make, const Vec2& at, double diameter, double width, const Rgb& color) {
@@ -104,16 +106,15 @@ Mark ring(const MarkMaker& make, const Vec2& at, double diameter, double width, 
         const double angle = 2 * std::numbers::pi * i / kSides;
         points.push_back(at + Vec2(std::cos(angle), std::sin(angle)) * (diameter / 2));
     }
-    Mark mark = make.lineMark(AnnotationPart::Legend, std::move(points), width);
-    mark.color = color;
-    return mark;
+    return coloredLine(make, std::move(points), width, color);
 }
 
+/// The points of a rectangle, closed.
+std::vector<Vec2> outline(const Vec2& lo, const Vec2& hi) { return {lo, {hi.x, lo.y}, hi, {lo.x, hi.y}, lo}; }
+
 Mark square(const MarkMaker& make, const Vec2& at) {
-    const double r = 0.6 * make.capHeight;
-    return make.lineMark(AnnotationPart::Legend,
-                         {at + Vec2(-r, -r), at + Vec2(r, -r), at + Vec2(r, r), at + Vec2(-r, r), at + Vec2(-r, -r)},
-                         0.22 * make.capHeight);
+    const Vec2 r(0.6 * make.capHeight);
+    return make.lineMark(AnnotationPart::Legend, outline(at - r, at + r), 0.22 * make.capHeight);
 }
 
 void addCross(std::vector<Mark>& marks, const MarkMaker& make, const Vec2& at) {
@@ -130,12 +131,9 @@ void addRows(std::vector<Mark>& marks, const ParameterSpace& space, const SpaceV
         const double x = make.margin + (row.sign == Row::Sign::None ? 0 : sign + 0.7 * cap);
         const Vec2 from{make.margin, y}, to{make.margin + sign, y};
         switch (row.sign) {
-        case Row::Sign::Path: {
-            Mark line = make.lineMark(AnnotationPart::Legend, {from, to}, 0.3 * cap);
-            line.color = row.color;
-            marks.push_back(line);
+        case Row::Sign::Path:
+            marks.push_back(coloredLine(make, {from, to}, 0.3 * cap, row.color));
             break;
-        }
         case Row::Sign::Minimum:
             addCross(marks, make, (from + to) * 0.5);
             break;
@@ -178,11 +176,8 @@ void addPaths(std::vector<Mark>& marks, const ParameterSpace& space, const Space
                 continue;
             }
             const double near = nearness(position), unit = near * make.capHeight;
-            if (before && glm::length(*at - *before) > 1e-6) {
-                Mark line = make.lineMark(AnnotationPart::Legend, {*before, *at}, 0.3 * unit);
-                line.color = path.color;
-                lines.push_back({near, line});
-            }
+            if (before && glm::length(*at - *before) > 1e-6)
+                lines.push_back({near, coloredLine(make, {*before, *at}, 0.3 * unit, path.color)});
             if (i == 0) signs.push_back({near, ring(make, *at, 1.3 * unit, 0.26 * unit, path.color)});
             if (i == path.best)
                 signs.push_back({near + 1, dot(make, *at, 1.2 * unit, path.color)}); // over the others
@@ -274,9 +269,7 @@ void addMapAxes(std::vector<Mark>& marks, const ParameterSpace& space, const Spa
     const auto [map, bar] = layoutOf(space, view);
     const double side = map.right - map.left;
     const auto frame = [&](const PixelBox& b) {
-        Mark mark = make.lineMark(
-            AnnotationPart::Axes,
-            {{b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}, {b.left, b.top}}, line);
+        Mark mark = make.lineMark(AnnotationPart::Axes, outline({b.left, b.top}, {b.right, b.bottom}), line);
         mark.halo = 0;
         marks.push_back(mark);
     };
@@ -447,13 +440,10 @@ Image heatMap(const ParameterSpace& space, const SpaceView& view) {
 }
 
 Image spaceImage(const ParameterSpace& space, const SpaceView& view, const JobControl& job) {
-    Image image;
-    if (space.isFlat()) {
-        image = heatMap(space, view);
-    } else {
-        image = makeCpuRenderer(spaceVolume(space, view.shown))
-                    ->render(view.camera, spaceTf(space, view), spaceRenderSettings(space, view), job);
-    }
+    Image image = space.isFlat()
+                      ? heatMap(space, view)
+                      : makeCpuRenderer(spaceVolume(space, view.shown))
+                            ->render(view.camera, spaceTf(space, view), spaceRenderSettings(space, view), job);
     drawMarks(image, spaceMarks(space, view));
     return image;
 }

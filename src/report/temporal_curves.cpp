@@ -1,7 +1,6 @@
 #include "report/temporal_curves.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "base/csv.h"
@@ -56,28 +55,6 @@ std::optional<double> at(const std::vector<double>& values, std::size_t i) {
     return i < values.size() ? std::optional(values[i]) : std::nullopt;
 }
 
-double largest(const Plot& plot) {
-    double most = 0;
-    for (const PlotSeries& s : plot.series)
-        for (const PlotPoint& p : s.points) most = std::max(most, p.y);
-    return most;
-}
-
-void fitLinear(Plot& plot, double most) {
-    const double hi = largest(plot);
-    plot.y.lo = 0;
-    plot.y.hi = hi > 0 ? std::min(most, 1.1 * hi) : std::min(most, 1.0);
-}
-
-void fitDecades(Plot& plot) {
-    double lo = 1;
-    for (const PlotSeries& s : plot.series)
-        for (const PlotPoint& p : s.points) lo = std::min(lo, std::max(p.y, kSmallestShown));
-    plot.y.logarithmic = true;
-    plot.y.lo = std::pow(10, std::floor(std::log10(lo) + 1e-9));
-    plot.y.hi = std::max(plot.y.lo * 10, std::pow(10, std::ceil(std::log10(std::max(largest(plot), lo)) - 1e-9)));
-}
-
 Plot plotOf(const TemporalCurves& curves, std::string title, std::string label) {
     Plot plot{.title = std::move(title), .x = frameAxis(curves), .y = {.label = std::move(label)}, .series = {}};
     if (curves.present >= plot.x.lo && curves.present <= plot.x.hi) {
@@ -91,14 +68,20 @@ std::string titled(const TemporalCurves& curves, const std::string& what, std::s
     return curves.runs.size() > 1 ? what + ", " + curves.runs[run].name : what;
 }
 
-/// One curve per feature of a run.
-template <class Values>
-void addFeatures(Plot& plot, const TemporalCurves& curves, std::size_t run, bool named, bool dashed,
-                 const Values& valuesOf) {
+/// One curve per feature of a run; those of targets are dashed and have no names.
+void addFeatures(Plot& plot, const TemporalCurves& curves, std::size_t run, std::vector<double> FrameFigures::*values) {
+    const bool isTarget = values == &FrameFigures::targets;
     for (std::size_t i = 0; i < curves.features.size(); ++i)
-        addCurve(plot, curves.runs[run], named ? curves.features[i] : std::string(),
-                 i < curves.colors.size() ? curves.colors[i] : curveColor(i), dashed,
-                 [&](const FrameFigures& f) { return at(valuesOf(f), i); });
+        addCurve(plot, curves.runs[run], isTarget ? std::string() : curves.features[i],
+                 i < curves.colors.size() ? curves.colors[i] : curveColor(i), isTarget,
+                 [&](const FrameFigures& f) { return at(f.*values, i); });
+}
+
+/// One curve per run.
+template <class ValueAt>
+void addRuns(Plot& plot, const TemporalCurves& curves, const ValueAt& valueAt) {
+    for (std::size_t r = 0; r < curves.runs.size(); ++r)
+        addCurve(plot, curves.runs[r], curves.runs[r].name, curveColor(r), false, valueAt);
 }
 
 } // namespace
@@ -112,10 +95,8 @@ bool TemporalCurves::empty() const {
 
 Plot temporalVwsPlot(const TemporalCurves& curves, std::size_t run, double highest) {
     Plot plot = plotOf(curves, titled(curves, "Visibility-weighted saliency", run), "VWS");
-    addFeatures(
-        plot, curves, run, true, false, [](const FrameFigures& f) -> const auto& { return f.vws; });
-    addFeatures(
-        plot, curves, run, false, true, [](const FrameFigures& f) -> const auto& { return f.targets; });
+    addFeatures(plot, curves, run, &FrameFigures::vws);
+    addFeatures(plot, curves, run, &FrameFigures::targets);
     fitLinear(plot, 1);
     if (highest > 0) plot.y.hi = highest;
     return plot;
@@ -123,34 +104,28 @@ Plot temporalVwsPlot(const TemporalCurves& curves, std::size_t run, double highe
 
 Plot temporalVisibilityPlot(const TemporalCurves& curves, std::size_t run) {
     Plot plot = plotOf(curves, titled(curves, "Feature visibility", run), "FV");
-    addFeatures(
-        plot, curves, run, true, false, [](const FrameFigures& f) -> const auto& { return f.visibility; });
+    addFeatures(plot, curves, run, &FrameFigures::visibility);
     fitLinear(plot, 1);
     return plot;
 }
 
 Plot temporalOpacityPlot(const TemporalCurves& curves, std::size_t run, bool logarithmic) {
     Plot plot = plotOf(curves, titled(curves, "Opacity of the peaks", run), "opacity per d0");
-    addFeatures(
-        plot, curves, run, true, false, [](const FrameFigures& f) -> const auto& { return f.opacity; });
-    logarithmic ? fitDecades(plot) : fitLinear(plot, 1);
+    addFeatures(plot, curves, run, &FrameFigures::opacity);
+    logarithmic ? fitDecades(plot, kSmallestShown) : fitLinear(plot, 1);
     return plot;
 }
 
 Plot temporalObjectivePlot(const TemporalCurves& curves) {
     Plot plot = plotOf(curves, "Distance from the targets", "F");
-    for (std::size_t r = 0; r < curves.runs.size(); ++r)
-        addCurve(plot, curves.runs[r], curves.runs[r].name, curveColor(r), false,
-                 [](const FrameFigures& f) { return std::optional(f.objective); });
+    addRuns(plot, curves, [](const FrameFigures& f) { return std::optional(f.objective); });
     fitLinear(plot, 1);
     return plot;
 }
 
 Plot temporalFlickerPlot(const TemporalCurves& curves) {
     Plot plot = plotOf(curves, "Flicker", "mean delta E");
-    for (std::size_t r = 0; r < curves.runs.size(); ++r)
-        addCurve(plot, curves.runs[r], curves.runs[r].name, curveColor(r), false,
-                 [](const FrameFigures& f) { return f.flicker; });
+    addRuns(plot, curves, [](const FrameFigures& f) { return f.flicker; });
     fitLinear(plot, 200);
     return plot;
 }
