@@ -4,7 +4,8 @@
 #   headless  the command line builds alone and needs neither Qt nor OpenGL to start
 #   headers   damaged headers of volume files, 2 000 of each format, are read or refused in words
 #   dev       everything builds with assertions and with warnings as errors
-#   asan      no fault of addresses or undefined behaviour in the tests of files, fields, sessions and commands
+#   asan      no fault of addresses or undefined behaviour in the tests of files, fields, sessions and commands, nor in what
+#             damaged headers make of the readers
 #   tsan      no race in the tests that use threads
 #   zink      the tests of OpenGL with another driver: Mesa's zink over its software Vulkan
 #   tidy      clang-tidy has nothing to say of files that differ from PELLUCID_BASE (the commit before this one)
@@ -60,7 +61,7 @@ check_asan() {
         pellucid-cli test_base test_volume test_tf test_saliency test_session test_cli
     # The drivers of OpenGL keep what they have until the program ends; leaks of ours are found by the other tests.
     ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
-        ctest --preset dev-asan --parallel 2 -L '^(base|volume|tf|saliency|session|cli)$'
+        ctest --preset dev-asan --parallel 2 -L '^(base|volume|tf|saliency|session|cli|tools)$'
 }
 
 check_tsan() {
