@@ -208,7 +208,7 @@ TEST_CASE("a globe of an older state is pale until it is made anew", "[gui][view
     w.search().setWanted(false); // as where the panel is closed: nothing begins by itself
     w.document().setTargets({0.7, 0.2, 0.1});
     CHECK_FALSE(w.search().isCurrent());
-    CHECK(w.words().contains("older state"));
+    CHECK(w.words().contains("earlier state"));
     CHECK_FALSE(w.button("viewsGo").isEnabled());
     const QImage pale = w.globePicture();
     CHECK(differentPixels(current, pale) > 1000);
