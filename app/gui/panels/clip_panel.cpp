@@ -23,8 +23,8 @@ constexpr const char* kAxes[] = {"x", "y", "z"};
 void addPlane(Services& services, QAction& handles) {
     const Scene& scene = services.scene();
     const ClipPlane plane = planeFacing(scene.camera, scene.volume->geometry());
-    services.store().edit(QObject::tr("Clip plane"), {},
-                          changing(&Session::clipping, [&](Clipping& c) { c.planes.push_back(plane); }));
+    editPart(services.store(), &Session::clipping, QObject::tr("Clip plane"), {},
+             [&](Clipping& c) { c.planes.push_back(plane); });
     if (!handles.isChecked()) handles.trigger(); // it is there to be moved
 }
 
@@ -149,14 +149,13 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
 }
 
 void ClipPanel::changePlanes(const QString& text, const std::function<void(std::vector<ClipPlane>&)>& change) {
-    m_services.store().edit(text, {}, changing(&Session::clipping, [&](Clipping& c) { change(c.planes); }));
+    editPart(m_services.store(), &Session::clipping, text, {}, [&](Clipping& c) { change(c.planes); });
 }
 
 void ClipPanel::editBox(int axis, bool upper, double percent) {
-    m_services.store().edit(tr("Clip"), QStringLiteral("clip-%1-%2").arg(axis).arg(upper),
-                            changing(&Session::clipping, [&](Clipping& c) {
-                                c = withFaceMoved(c, axis, upper, percent / 100 - (upper ? c.hi : c.lo)[axis], false);
-                            }));
+    editPart(
+        m_services.store(), &Session::clipping, tr("Clip"), QStringLiteral("clip-%1-%2").arg(axis).arg(upper),
+        [&](Clipping& c) { c = withFaceMoved(c, axis, upper, percent / 100 - (upper ? c.hi : c.lo)[axis], false); });
 }
 
 void ClipPanel::editPlane(std::size_t index, int number, double value) {
@@ -168,8 +167,9 @@ void ClipPanel::editPlane(std::size_t index, int number, double value) {
     else
         plane.offset = value;
     if (!(glm::length(plane.normal) > 0)) return follow(); // no direction is left
-    m_services.store().edit(tr("Clip plane"), QStringLiteral("clip-plane-%1-%2").arg(index).arg(number),
-                            changing(&Session::clipping, [&](Clipping& c) { c.planes.at(index) = plane; }));
+    editPart(m_services.store(), &Session::clipping, tr("Clip plane"),
+             QStringLiteral("clip-plane-%1-%2").arg(index).arg(number),
+             [&](Clipping& c) { c.planes.at(index) = plane; });
 }
 
 void ClipPanel::follow() {

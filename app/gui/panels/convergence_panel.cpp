@@ -66,7 +66,7 @@ QString tipOf(const Run& run) {
 }
 
 void changeRuns(Services& services, const QString& text, const std::function<void(std::vector<Run>&)>& change) {
-    services.store().edit(text, {}, changing(&Session::runs, change));
+    editPart(services.store(), &Session::runs, text, {}, change);
 }
 
 } // namespace

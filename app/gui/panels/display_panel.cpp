@@ -82,13 +82,13 @@ DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget*
 
     connect(m_feature, &QComboBox::activated, this, [this] {
         const FeatureId id = chosenFeature(*m_feature);
-        m_services.store().edit(tr("Feature alone"), {},
-                                changing(&Session::display, [id](DisplaySettings& d) { d.onlyFeature = id; }));
+        editPart(m_services.store(), &Session::display, tr("Feature alone"), {},
+                 [id](DisplaySettings& d) { d.onlyFeature = id; });
     });
     connect(m_finest, &QComboBox::activated, this, [this] {
         const double step = m_finest->currentData().toDouble();
-        m_services.store().edit(tr("Finest step"), {},
-                                changing(&Session::display, [step](DisplaySettings& d) { d.finestStep = step; }));
+        editPart(m_services.store(), &Session::display, tr("Finest step"), {},
+                 [step](DisplaySettings& d) { d.finestStep = step; });
     });
     connect(m_lo, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_hi, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);

@@ -150,7 +150,7 @@ void FieldsPanel::addRows(QFormLayout& form) {
 }
 
 void FieldsPanel::edit(const QString& text, const std::function<void(FieldView&)>& change) {
-    m_services.store().edit(text, {}, changing(&Session::field, change));
+    editPart(m_services.store(), &Session::field, text, {}, change);
 }
 
 void FieldsPanel::editTop() {

@@ -74,8 +74,8 @@ GroundBox::GroundBox(Services& services, OpenController& opening) : m_services(s
             [this] { m_services.store().edit(tr("Remove ground"), {}, [](Session& s) { s.ground.set({}); }); });
     connect(m_colorMap, &QComboBox::activated, this, [this] {
         const std::string name = m_colorMap->currentData().toString().toStdString();
-        m_services.store().edit(tr("Colours of the ground"), {},
-                                changing(&Session::ground, [name](GroundView& g) { g.colorMap = name; }));
+        editPart(m_services.store(), &Session::ground, tr("Colours of the ground"), {},
+                 [name](GroundView& g) { g.colorMap = name; });
     });
     connect(&m_services.store(), &SessionStore::changed, this, [=, this](const Scene& before, const Scene& after) {
         if (before.ground == after.ground) return;

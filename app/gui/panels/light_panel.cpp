@@ -83,7 +83,7 @@ LightPanel::LightPanel(Services& services, QAction& light, QWidget* parent) : QW
 }
 
 void LightPanel::edit(const QString& text, const QString& mergeKey, const std::function<void(Light&)>& change) {
-    m_services.store().edit(text, mergeKey, changing(&Session::display, [&](DisplaySettings& d) { change(d.light); }));
+    editPart(m_services.store(), &Session::display, text, mergeKey, [&](DisplaySettings& d) { change(d.light); });
 }
 
 void LightPanel::editDirection() {
@@ -121,8 +121,8 @@ PanelInfo lightPanel() {
                     QObject::tr("&View"), "shadingAction", QObject::tr("&Light"), "L",
                     QObject::tr("Light by the gradient of the values, or plain colours"),
                     [&store] {
-                        store.edit(QObject::tr("Light"), {},
-                                   changing(&Session::display, [](DisplaySettings& d) { d.light.on = !d.light.on; }));
+                        editPart(store, &Session::display, QObject::tr("Light"), {},
+                                 [](DisplaySettings& d) { d.light.on = !d.light.on; });
                     },
                     [&services] { return services.isEditable(); },
                     {.checked = [&store] { return store.session().display->light.on; }, .separatorBefore = true});

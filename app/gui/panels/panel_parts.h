@@ -1,12 +1,12 @@
-// What several panels do: edit a part of the session, follow it, offer its features, export curves.
+// What several panels do: follow a part of the session, offer its features, export curves.
 #pragma once
 
 #include <functional>
 #include <span>
 #include <string>
-#include <type_traits>
 
 #include "services/services.h"
+#include "store/edits.h"
 
 class QComboBox;
 
@@ -15,12 +15,6 @@ struct Plot;
 }
 
 namespace pellucid::gui {
-
-/// A change of one part of the session: `changing(&Session::display, [](DisplaySettings& d) { … })`.
-template <class T>
-SessionStore::Change changing(Part<T> Session::*part, std::type_identity_t<std::function<void(T&)>> change) {
-    return [=](Session& session) { (session.*part).edit(change); };
-}
 
 /// Calls `follow` now, where the volume or one of these parts becomes another one, and where editing begins or ends.
 template <class... T>

@@ -1,15 +1,23 @@
 // The edits that several panels make.
 #pragma once
 
+#include <functional>
+#include <type_traits>
+
 #include "store/session_store.h"
 
 namespace pellucid::gui {
 
-/// One step that changes one part of the session: `change` gets the part.
-template <class T, class Change>
+/// A change of one part of the session: `changing(&Session::display, [](DisplaySettings& d) { … })`.
+template <class T>
+SessionStore::Change changing(Part<T> Session::*part, std::type_identity_t<std::function<void(T&)>> change) {
+    return [=](Session& session) { (session.*part).edit(change); };
+}
+/// One step that changes one part of the session.
+template <class T>
 void editPart(SessionStore& store, Part<T> Session::*part, const QString& text, const QString& mergeKey,
-              const Change& change) {
-    store.edit(text, mergeKey, [&](Session& session) { (session.*part).edit(change); });
+              std::type_identity_t<std::function<void(T&)>> change) {
+    store.edit(text, mergeKey, changing(part, std::move(change)));
 }
 /// Changes the variable that is drawn; the session has one.
 template <class Change>
