@@ -77,9 +77,9 @@ check_tsan() {
 
 check_zink() {
     scripts/setup.sh mesa-vulkan-drivers
-    scripts/build.sh test_gl
+    scripts/build.sh test_gl test_golden
     LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink PELLUCID_REQUIRE_GL=1 PELLUCID_GL_DEBUG=1 \
-        ctest --preset release -L '^gl$'
+        ctest --preset release --parallel 2 -L '^(gl|golden)$' -E OSMesa
 }
 
 check_tidy() {

@@ -107,17 +107,14 @@ const std::vector<Golden>& goldens() {
              s.ground = island(40);
          },
          kLitOverGround},
-        {
-            "surface_over_a_ground",
-            [](RenderSettings& s) {
-                s.mode = RenderMode::Surface;
-                s.light.on = true;
-                s.background.reset();
-                s.clipping.hi.z = 0.6;
-                s.colors = spirals({40, 40, 40});
-                s.ground = island(40);
-            },
-        }};
+        {"surface_over_a_ground", [](RenderSettings& s) {
+             s.mode = RenderMode::Surface;
+             s.light.on = true;
+             s.background.reset();
+             s.clipping.hi.z = 0.6;
+             s.colors = spirals({40, 40, 40});
+             s.ground = island(40);
+         }}};
     return all;
 }
 
