@@ -100,7 +100,8 @@ std::vector<Candidate> eglCandidates() {
     return all;
 }
 
-/// For tests: what the driver calls an error is printed and ends the program.
+/// For tests: what the driver calls an error is printed and ends the program. A shader that does not compile is left to
+/// Program, which says where.
 bool errorsEndTheProgram() { return std::getenv("PELLUCID_GL_DEBUG") != nullptr; }
 
 void watchErrors() {
@@ -108,8 +109,8 @@ void watchErrors() {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS); // so that the place is on the stack
     glDebugMessageCallback(
-        [](GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* text, const void*) {
-            if (type != GL_DEBUG_TYPE_ERROR) return;
+        [](GLenum source, GLenum type, GLuint, GLenum, GLsizei, const GLchar* text, const void*) {
+            if (type != GL_DEBUG_TYPE_ERROR || source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
             std::fprintf(stderr, "OpenGL: %s\n", text);
             std::abort();
         },
