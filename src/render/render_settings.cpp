@@ -65,7 +65,8 @@ void RenderSettings::validate() const {
     if (!(stepInD0 > 0 && stepInD0 <= 16))
         throw UsageError("the step must lie in (0, 16] reference lengths", "step", "give such a step");
     if (finestInD0 && !(*finestInD0 >= kFinestStep && *finestInD0 <= 16))
-        throw UsageError("the finest step must lie in [1/256, 16] reference lengths", "finest step", "give such a step");
+        throw UsageError("the finest step must lie in [1/256, 16] reference lengths", "finest step",
+                         "give such a step");
     clipping.validate();
     checkSettings(light, "light");
     const double length = glm::length(light.direction);

@@ -1,11 +1,11 @@
 // The slices engine: docs/method.md, "The slices engine".
 #include "gl_test.h"
 
+#include "render/gl/engine_budgets.h"
 #include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/kept_region.h"
 #include "render/gl/layered_view.h"
-#include "render/gl/engine_budgets.h"
 #include "support/engine_checks.h"
 #include "support/field_sums.h"
 

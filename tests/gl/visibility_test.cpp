@@ -3,9 +3,9 @@
 #include <array>
 
 #include "base/parallel.h"
+#include "render/gl/engine_budgets.h"
 #include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
-#include "render/gl/engine_budgets.h"
 #include "support/engine_checks.h"
 #include "support/field_sums.h"
 

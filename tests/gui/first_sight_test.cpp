@@ -9,8 +9,8 @@
 #include <QSettings>
 
 #include "controllers/start_controller.h"
-#include "window/welcome_card.h"
 #include "support/outlier_boxes.h"
+#include "window/welcome_card.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

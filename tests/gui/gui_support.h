@@ -8,12 +8,12 @@
 #include <QTest>
 
 #include "controllers/controllers.h"
-#include "window/main_window.h"
 #include "panels/features_model.h"
 #include "panels/target_bars.h"
 #include "store/edits.h"
 #include "tf/tf_canvas.h"
 #include "volume/procedural.h"
+#include "window/main_window.h"
 
 namespace pellucid::gui {
 

@@ -19,12 +19,12 @@
 #include <QTimer>
 #include <QToolButton>
 
-#include "window/dock_space.h"
 #include "panels/density_slider.h"
 #include "panels/panel.h"
 #include "session/session_json.h"
 #include "tf/edit.h"
 #include "widgets/theme.h"
+#include "window/dock_space.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

@@ -23,7 +23,8 @@ constexpr double kVoxelsInAWhile = 3e9; ///< voxels times sweeps that two cores 
 void ParameterAxes::validate(std::size_t featureCount) const {
     const char* const where = "parameter space";
     if (features.size() != 2 && features.size() != 3)
-        throw UsageError(std::to_string(features.size()) + " features cannot be its axes", where, "choose two or three");
+        throw UsageError(std::to_string(features.size()) + " features cannot be its axes", where,
+                         "choose two or three");
     for (const std::size_t f : features)
         if (f >= featureCount) throw UsageError("there is no feature " + std::to_string(f + 1), where, "choose others");
     if (std::set<std::size_t>(features.begin(), features.end()).size() != features.size())
