@@ -80,9 +80,6 @@ std::string bytesText(std::size_t bytes) {
     return fixedText(value, 1) + " " + kUnits[unit];
 }
 
-std::string dimsText(const Int3& d) {
-    return std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z);
-}
 std::string vectorText(const Vec3& v) { return plainText(v.x) + " x " + plainText(v.y) + " x " + plainText(v.z); }
 std::string rangeText(double lo, double hi) { return plainText(lo) + " .. " + plainText(hi); }
 std::string secondsText(double seconds) {

@@ -39,7 +39,6 @@ std::string listing(const std::vector<std::pair<std::string, std::string>>& line
 
 std::string countText(std::size_t value);    ///< "26,470,255"
 std::string bytesText(std::size_t bytes);    ///< "12.3 MiB"
-std::string dimsText(const Int3& dims);      ///< "41 x 41 x 41"
 std::string vectorText(const Vec3& v);       ///< "0.5 x 0.5 x 1"
 std::string rangeText(double lo, double hi); ///< "0 .. 255"
 std::string secondsText(double seconds);     ///< "2.10 s", "210.0 ms", "21.0 µs"

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include "tf/terrain.h"
+#include "volume/grid.h"
 
 namespace pellucid {
 
@@ -21,9 +22,8 @@ constexpr double kRise = 0.1;
 std::pair<int, int> axesOf(const Int3& dims, const std::string& path) {
     const int across = dims.z == 1 ? 2 : dims.y == 1 ? 1 : dims.x == 1 ? 0 : -1;
     if (across < 0)
-        throw FileError("a ground is one layer of heights, this has " + std::to_string(dims.x) + " x " +
-                            std::to_string(dims.y) + " x " + std::to_string(dims.z) + " voxels",
-                        path, "give a file with one layer");
+        throw FileError("a ground is one layer of heights, this has " + dimsText(dims) + " voxels", path,
+                        "give a file with one layer");
     const std::pair<int, int> axes{across == 0 ? 1 : 0, across == 2 ? 1 : 2};
     if (dims[axes.first] < 2 || dims[axes.second] < 2)
         throw FileError("a ground needs at least 2 x 2 heights", path, "give a file with a layer of heights");

@@ -139,9 +139,8 @@ void SaveController::saveReport(const Run& run, const QString& folder) {
 
 void SaveController::chooseReport(const Run& run) {
     const Run kept = run; // a dialog is open for long
-    const QString folder =
-        QFileDialog::getExistingDirectory(m_services.window(), tr("Folder for the report"),
-                                          QSettings().value("reportFolder", QDir::homePath()).toString());
+    const QString folder = QFileDialog::getExistingDirectory(m_services.window(), tr("Folder for the report"),
+                                                             keptFolder("reportFolder", QDir::homePath()));
     if (folder.isEmpty()) return;
     const QString question = tr("There is a report in %1. Replace it?").arg(QFileInfo(folder).fileName());
     if (!mayReplace(QDir(folder).filePath(kReportFile), tr("Save report"), question)) return;
@@ -175,7 +174,7 @@ bool SaveController::chooseTf(bool askForName) {
 
 void SaveController::chooseImage() {
     if (!m_services.store().hasVolume()) return;
-    const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
+    const QString folder = keptFolder("imageFolder", QDir::homePath());
     SaveImageDialog dialog(QDir(folder).filePath(baseName(m_services.scene()) + ".png"), m_seen,
                            m_services.scene().session.reference->any() || m_fields.field() != nullptr,
                            m_services.window());

@@ -7,8 +7,10 @@
 
 namespace pellucid::gui {
 
-/// The folder kept under `key`, such as "volumeFolder"; empty before the first.
-inline QString keptFolder(const QString& key) { return QSettings().value(key).toString(); }
+/// The folder kept under `key`, such as "volumeFolder"; `first` before there is one.
+inline QString keptFolder(const QString& key, const QString& first = {}) {
+    return QSettings().value(key, first).toString();
+}
 inline void keepFolderOf(const QString& key, const QString& path) {
     QSettings().setValue(key, QFileInfo(path).absolutePath());
 }

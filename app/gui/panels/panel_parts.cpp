@@ -2,10 +2,9 @@
 
 #include <QComboBox>
 #include <QDir>
-#include <QFileDialog>
-#include <QSettings>
 
 #include "base/atomic_file.h"
+#include "dialogs/ask_file.h"
 #include "widgets/controls.h"
 #include "widgets/plot_view.h"
 #include "widgets/theme.h"
@@ -31,12 +30,12 @@ QString askCurveFile(Services& services, const QString& title, const QString& na
     for (const auto& [kind, filter] : kinds)
         if (suffix.isEmpty() || suffix == kind) filters << filter;
     const QString usual = "." + (suffix.isEmpty() ? kinds[0].first : suffix);
-    const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
+    const QString folder = keptFolder("curvesFolder", QDir::homePath());
     QString path =
         QFileDialog::getSaveFileName(services.window(), title, QDir(folder).filePath(name + usual), filters.join(";;"));
     if (path.isEmpty()) return {};
     if (QFileInfo(path).suffix().isEmpty()) path += usual;
-    QSettings().setValue("curvesFolder", QFileInfo(path).absolutePath());
+    keepFolderOf("curvesFolder", path);
     return path;
 }
 

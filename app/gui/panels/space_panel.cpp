@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include <QDir>
-#include <QFileDialog>
-#include <QSettings>
 #include <QSignalBlocker>
 
 #include "base/atomic_file.h"
+#include "dialogs/ask_file.h"
 #include "image_io/image_file.h"
 #include "panels/panel.h"
 #include "services/services.h"
@@ -316,12 +315,12 @@ void SpacePanel::apply(const std::vector<double>& opacities, const QString& text
 }
 
 void SpacePanel::save() {
-    const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
+    const QString folder = keptFolder("imageFolder", QDir::homePath());
     const QString path =
         QFileDialog::getSaveFileName(this, tr("Save parameter space"), QDir(folder).filePath("parameter-space.png"),
                                      tr("Pictures (*.png *.tif *.exr *.jpg);;Tables (*.csv)"));
     if (path.isEmpty()) return;
-    QSettings().setValue("imageFolder", QFileInfo(path).absolutePath());
+    keepFolderOf("imageFolder", path);
     saveTo(path);
 }
 

@@ -79,13 +79,11 @@ inline FeatureGoal goalOf(const Session& session, FeatureId feature) {
 inline void editOpacityLimits(SessionStore& store, int feature, const OpacityLimits& limits, const QString& text) {
     store.commit();
     const FeatureId id = store.scene().tf.features.at(static_cast<std::size_t>(feature)).id;
-    store.edit(text, {}, [&](Session& session) {
-        session.goals.edit([&](FeatureGoals& goals) {
-            FeatureGoal& goal = goals[id];
-            goal.locked = limits.locked;
-            goal.lowest = limits.lowest;
-            goal.highest = limits.highest;
-        });
+    editPart(store, &Session::goals, text, {}, [&](FeatureGoals& goals) {
+        FeatureGoal& goal = goals[id];
+        goal.locked = limits.locked;
+        goal.lowest = limits.lowest;
+        goal.highest = limits.highest;
     });
 }
 /// As the session has them: a hidden feature is not locked by that here.

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "services/services.h"
+#include "store/edits.h"
 
 namespace pellucid::gui {
 namespace {
@@ -47,12 +48,10 @@ void LightLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const Overlay
     if (m_services.isReadOnly()) return;
     const QPointF way = point - m_from;
     const Vec3 direction = turnedBall(m_start, way.x(), way.y(), kRadiusOfView * view.size.height());
-    m_services.store().preview(QObject::tr("Light"), [&](Session& session) {
-        session.display.edit([&](DisplaySettings& d) {
-            d.light.on = true;
-            d.light.direction = direction;
-        });
-    });
+    m_services.store().preview(QObject::tr("Light"), changing(&Session::display, [&](DisplaySettings& d) {
+                                   d.light.on = true;
+                                   d.light.direction = direction;
+                               }));
 }
 
 void LightLayer::end(bool kept) {

@@ -56,9 +56,7 @@ SliceBar::SliceBar(Services& services, QWidget* parent)
 
 void SliceBar::editStrength(int percent) {
     const QString text = tr("Colours of the slices");
-    const auto change = [percent](Session& session) {
-        session.slices.edit([percent](SliceViews& s) { s.tfStrength = percent / 100.0; });
-    };
+    const auto change = changing(&Session::slices, [percent](SliceViews& s) { s.tfStrength = percent / 100.0; });
     if (m_strength->isSliderDown())
         m_services.store().preview(text, change);
     else

@@ -16,6 +16,7 @@
 
 #include "base/stopwatch.h"
 #include "services/services.h"
+#include "store/edits.h"
 #include "store/view_edits.h"
 #include "tf/shown_tf.h"
 #include "view/view_surface.h"
@@ -243,9 +244,9 @@ void SlicePane::dragWindow(const QPointF& way) {
     const double start = std::max(from.hi - from.lo, whole * 1e-6);
     const double width = std::clamp(start * std::exp2(way.x() / kWidthPixels), whole * 1e-6, 4 * whole);
     const double level = std::clamp(from.lo + (from.hi - from.lo) / 2 - start * way.y() / kLevelPixels, all.lo, all.hi);
-    m_services.store().preview(tr("Window of grey"), [&](Session& session) {
-        session.slices.edit([&](SliceViews& s) { s.window = ValueRange{level - width / 2, level + width / 2}; });
-    });
+    m_services.store().preview(tr("Window of grey"), changing(&Session::slices, [&](SliceViews& s) {
+                                   s.window = ValueRange{level - width / 2, level + width / 2};
+                               }));
 }
 
 void SlicePane::hover(const std::optional<QPointF>& point) {

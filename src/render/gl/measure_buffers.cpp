@@ -68,6 +68,12 @@ void describeVolume(const Program& program, const ResidentVolume& volume, const 
     program.set(19, f.tile);
 }
 
+void gatherVoxels(const Program& program, const Int3& voxels) {
+    program.use();
+    glDispatchCompute(groups(voxels.x, kGroupSide), groups(voxels.y, kGroupSide), groups(voxels.z, kPlanesPerGroup));
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+}
+
 void readVisibility(const Buffer& buffer, std::size_t count, const std::function<void(std::span<const float>)>& use) {
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.name.id());
     const void* data =

@@ -39,6 +39,9 @@ private:
 
 /// Sets what shaders/include/resident.glsl reads: voxel of the resident box = voxelFrom·p + offset.
 void describeVolume(const Program& program, const ResidentVolume& volume, const Mat3& voxelFrom, const Vec3& offset);
+/// Runs a gathering shader, its uniforms being set, over `voxels` along x, y and the planes of one step. What it writes
+/// can be read by shaders and by readVisibility() afterwards.
+void gatherVoxels(const Program& program, const Int3& voxels);
 /// Calls use(the first `count` visibilities in the buffer). Throws Error where it cannot be read.
 void readVisibility(const Buffer& buffer, std::size_t count, const std::function<void(std::span<const float>)>& use);
 

@@ -231,10 +231,7 @@ private:
         bindStorage(5, m_output);
         programs.gather.set(20, glm::ivec2(plane, end));
         programs.gather.set(22, glm::ivec2(firstSlab, endSlab));
-        programs.gather.use();
-        glDispatchCompute(groups(dims.x, kGroupSide), groups(dims.y, kGroupSide), groups(end - plane, kPlanesPerGroup));
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
-                        GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+        gatherVoxels(programs.gather, {dims.x, dims.y, end - plane});
     }
 
     const IntensityGrid& m_grid;

@@ -69,11 +69,7 @@ public:
     }
     void gather(const Sweep& s, int firstPlane, int endPlane) const {
         m_gather.set(20, glm::ivec2(firstPlane, endPlane));
-        m_gather.use();
-        glDispatchCompute(groups(s.dims.x, kGroupSide), groups(s.dims.y, kGroupSide),
-                          groups(endPlane - firstPlane, kPlanesPerGroup));
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
-                        GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+        gatherVoxels(m_gather, {s.dims.x, s.dims.y, endPlane - firstPlane});
     }
 
 private:
