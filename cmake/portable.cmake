@@ -1,10 +1,11 @@
 # Programs that are copied to other machines need no library there but glibc's (and at run time the driver's libEGL).
 # Layers whose libraries would be needed choose another way for them: the property PELLUCID_PORTABLE of the program that
 # is linked in the end decides, wherever a layer's link line asks $<IF:${PELLUCID_IS_PORTABLE},this,that>.
-# The thread sanitizer has to see all threads, so that TBB's, which it cannot look into, are left out there, too.
 set(PELLUCID_IS_PORTABLE "$<BOOL:$<TARGET_PROPERTY:PELLUCID_PORTABLE>>")
+# Threads of the standard library in the place of TBB's: the thread sanitizer cannot look into those.
+set(PELLUCID_STANDARD_THREADS ${PELLUCID_IS_PORTABLE})
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")
-    set(PELLUCID_IS_PORTABLE 1)
+    set(PELLUCID_STANDARD_THREADS 1)
 endif()
 
 function(pellucid_make_portable target)

@@ -68,11 +68,14 @@ check_tsan() {
     need
     cmake --preset dev-tsan >/dev/null
     cmake --build --preset dev-tsan --target test_base test_parallel_threads test_volume test_session test_gui
-    local options="suppressions=$PWD/scripts/tsan.supp:halt_on_error=1:second_deadlock_stack=1"
-    TSAN_OPTIONS=$options on_display ctest --preset dev-tsan --parallel 2 -L '^(base|parallel_threads)$'
-    TSAN_OPTIONS=$options on_display ctest --preset dev-tsan --parallel 2 -R '[Ff]rames|workspace|thread|cancel' \
-        -L '^(volume|session)$'
-    TSAN_OPTIONS=$options on_display ctest --preset dev-tsan -L '^gui$' -R 'jobs?|lane|play|series|cancel'
+    export TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp:halt_on_error=1:second_deadlock_stack=1"
+    local status=0
+    # The sanitizer needs more addresses than a limit on them leaves.
+    on_display ctest --preset dev-tsan --parallel 2 -L '^(base|parallel_threads)$' -E 'address space' || status=1
+    on_display ctest --preset dev-tsan --parallel 2 -L '^(volume|session)$' -R '[Ff]rames|workspace|thread|cancel' ||
+        status=1
+    on_display ctest --preset dev-tsan --parallel 2 -L '^gui$' -R 'job|player|played|series|[Ff]rame|cancel|while|optimiz' || status=1
+    return $status
 }
 
 check_zink() {

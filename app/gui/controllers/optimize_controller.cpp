@@ -44,8 +44,7 @@ OptimizeController::OptimizeController(Services& services)
               int move = 0;
               const auto watch = [&](const OptimizeState& state) {
                   if (job.stop.stop_requested()) return;
-                  QMetaObject::invokeMethod(this,
-                                            [this, task, state, number = move++] { showMove(task, number, state); });
+                  m_job.post([this, task, state, number = move++] { showMove(task, number, state); });
               };
               OptimizeResult result = workspace.optimize(task.input, task.targets, task.limits, task.options,
                                                          {job.stop, {}}, watch, task.known);

@@ -47,7 +47,7 @@ ViewSearchController::ViewSearchController(Services& services, OptimizeControlle
           [this](const Task& task, const JobControl& job) {
               const auto watch = [&](const ViewMap& map) {
                   if (!job.stop.stop_requested())
-                      QMetaObject::invokeMethod(this, [this, map, number = task.number] { grow(number, map); });
+                      m_search.post([this, map, number = task.number] { grow(number, map); });
               };
               return m_views.search(task.question.input, task.question.metric, kSphereViews, job, watch);
           },

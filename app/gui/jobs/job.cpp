@@ -2,6 +2,9 @@
 
 #include <new>
 
+#include <QCoreApplication>
+#include <QEvent>
+
 namespace pellucid::gui {
 
 Error errorOf(const std::exception_ptr& thrown, const QString& where) {
@@ -103,6 +106,27 @@ void JobBase::cancel() {
     Q_EMIT busyChanged();
 }
 
+void JobBase::post(std::function<void()> call) {
+    const std::lock_guard lock(m_postMutex);
+    m_posted.push_back(std::move(call));
+    QCoreApplication::postEvent(this, new QEvent(QEvent::User));
+}
+
+bool JobBase::event(QEvent* event) {
+    std::function<void()> call;
+    {
+        // Before the event is looked at. Qt orders it after post(), too, but where no thread sanitizer sees it.
+        const std::lock_guard lock(m_postMutex);
+        if (event->type() == QEvent::User && !m_posted.empty()) {
+            call = std::move(m_posted.front());
+            m_posted.pop_front();
+        }
+    }
+    if (!call) return QObject::event(event);
+    call(); // this object may have gone afterwards
+    return true;
+}
+
 void JobBase::run(const QString& where, Work work) {
     Pending next{where, std::move(work)};
     if (!m_running) return begin(std::move(next));
@@ -137,12 +161,12 @@ void JobBase::begin(Pending next) {
     const auto task = [this, number, stop = m_stop.get_token(), shared = m_shared, next = std::move(next)] {
         if (!shared->enter()) return;
         const JobControl job{stop, [this, number](double fraction) {
-                                 QMetaObject::invokeMethod(this, [this, number, fraction] {
+                                 post([this, number, fraction] {
                                      if (number == m_run) Q_EMIT progress(fraction);
                                  });
                              }};
         const auto answer = [this, number](std::function<void()> what) {
-            QMetaObject::invokeMethod(this, [this, number, what = std::move(what)] { ended(number, what); });
+            post([this, number, what = std::move(what)] { ended(number, what); });
         };
         try {
             job.throwIfStopped();

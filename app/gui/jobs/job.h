@@ -58,6 +58,9 @@ public:
     bool isRunning() const { return m_running; }
     /// Nothing that was started answers any more; `cancelled` follows at once. The work itself ends when it notices.
     void cancel();
+    /// For the work while it goes on, in its thread: has `call` called in the thread of this object, after what was
+    /// posted earlier and before the answer; never when this object has gone.
+    void post(std::function<void()> call);
 
 Q_SIGNALS:
     void busyChanged(); ///< isRunning() may have changed; after the answer has been delivered
@@ -75,6 +78,7 @@ protected:
     void run(const QString& where, Work work);
     /// Stops what runs and waits; for destructors, before what the work uses goes.
     void finish();
+    bool event(QEvent* event) override;
 
 private:
     struct Pending {
@@ -92,6 +96,8 @@ private:
     std::deque<Pending> m_waiting;
     quint64 m_run = 0; // numbers the runs, so that a late answer of a stopped one is dropped
     bool m_running = false;
+    std::mutex m_postMutex;
+    std::deque<std::function<void()>> m_posted; // an event of ours is on its way for each
 };
 
 /// Work from In to Out. `work` runs elsewhere and may throw Error, Cancelled, std::bad_alloc; `done` gets what it made,

@@ -78,7 +78,7 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
               for (std::size_t i = 0; i < task.tfs.size(); ++i) {
                   picture.tf = task.tfs[i];
                   const Image image = renderer->render(picture, {job.stop, {}});
-                  QMetaObject::invokeMethod(this, [this, number = task.number, i, picture = qImageFromImage(image)] {
+                  m_job.post([this, number = task.number, i, picture = qImageFromImage(image)] {
                       showPicture(number, static_cast<int>(i), picture);
                   });
               }
