@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/error.h"
+#include "base/setting.h"
 #include "output.h"
 
 namespace pellucid::cli {
@@ -49,14 +50,14 @@ double parseReal(const std::string& text, const std::string& option) {
 double parseRealFrom(const std::string& text, const std::string& option, double lo, double hi) {
     const double value = parseReal(text, option);
     if (value >= lo && value <= hi) return value;
-    throw UsageError(text + " is out of range", option, "give a number from " + plainText(lo) + " to " + plainText(hi));
+    throw UsageError(text + " is out of range", option, "give a number " + NumberRange{lo, hi}.text());
 }
 
 double parseRealAbove(const std::string& text, const std::string& option, double lo, double hi) {
     const double value = parseReal(text, option);
     if (value > lo && value <= hi) return value;
     throw UsageError(text + " is out of range", option,
-                     "give a number above " + plainText(lo) + ", at most " + plainText(hi));
+                     "give a number " + NumberRange{lo, hi, NumberRange::Open::Low}.text());
 }
 
 long long parseInteger(const std::string& text, const std::string& option, long long lo, long long hi) {
@@ -165,7 +166,7 @@ ClipAxis parseClipAxis(const std::string& text, const std::string& option) {
 Clip parseClip(const std::string& text, const std::string& option) {
     if (text.size() > 1 && text[1] == ':' && looksLikeClip(text)) return parseClipAxis(text, option);
     if (text.find(',') == std::string::npos)
-        throw UsageError(quoted(text) + " is no clip", option,
+        throw UsageError(quoted(text) + " is not a clip", option,
                          "give x:A:B, y:A:B, z:A:B, or a plane NX,NY,NZ,D, which keeps NX*x + NY*y + NZ*z <= D");
     const auto v = parseReals(text, option, 4, "NX,NY,NZ,D: a normal, and how far along it is kept");
     const ClipPlane plane{{v[0], v[1], v[2]}, v[3]};

@@ -25,13 +25,13 @@ Int3 parsePixel(const std::string& text, const ImageSize& size) {
     const std::string form = "give the column and the row of a pixel, from 0,0 at the top left to " +
                              std::to_string(size.width - 1) + "," + std::to_string(size.height - 1);
     const auto parts = split(text, ',');
-    if (parts.size() != 2) throw UsageError("'" + text + "' is no pixel", "X,Y", form);
+    if (parts.size() != 2) throw UsageError("'" + text + "' is not a pixel", "X,Y", form);
     Int3 pixel(0);
     for (int a = 0; a < 2; ++a) try {
             pixel[a] = static_cast<int>(
                 parseInteger(parts[static_cast<std::size_t>(a)], "X,Y", 0, (a == 0 ? size.width : size.height) - 1));
         } catch (const UsageError&) {
-            throw UsageError("'" + text + "' is no pixel of the picture", "X,Y", form);
+            throw UsageError("'" + text + "' is not a pixel of the picture", "X,Y", form);
         }
     return pixel;
 }

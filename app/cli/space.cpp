@@ -257,7 +257,7 @@ Command addSpace(CLI::App& program) {
             const auto parts = split(text, ':');
             o->axes.scale = parseName<AxisScale>(parts.front(), option);
             if (parts.size() > 2 || (parts.size() == 2 && o->axes.scale == AxisScale::Linear))
-                throw UsageError("'" + text + "' is no scale", option, "give linear, log or log:LOWEST");
+                throw UsageError("'" + text + "' is not a scale", option, "give linear, log or log:LOWEST");
             if (parts.size() == 2) o->axes.lowest = parseRealFrom(parts[1], option, 1e-6, 0.5);
         },
         "opacities from 0 to 1 in equal steps (default), or from LOWEST (default 0.001) to 1 in equal factors");

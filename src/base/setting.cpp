@@ -24,6 +24,12 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
+/// With all its digits; of a whole number no exponent.
+std::string exactText(double value) {
+    constexpr double kMostWhole = 1e15;
+    return std::abs(value) < kMostWhole && value == std::floor(value) ? fixedText(value, 0) : json(value).dump();
+}
+
 /// What files say for a number without end.
 constexpr const char* kInfinite = "infinite";
 
@@ -35,7 +41,7 @@ SettingValue valueIn(const Setting& setting, const void* settings) { return sett
 }
 
 void checkNumber(const Setting& setting, const void* settings, double value) {
-    if (!setting.range.holds(value)) refuse(setting, settings, plainText(value) + " is out of range");
+    if (!setting.range.holds(value)) refuse(setting, settings, exactText(value) + " is out of range");
 }
 
 double numberFrom(const Setting& setting, const void* settings, const std::string& text) {
@@ -98,9 +104,9 @@ json jsonOf(const Setting& setting, const void* settings) {
 
 std::string NumberRange::text() const {
     const bool isAbove = open == Open::Low;
-    const std::string from = (isAbove ? "above " : "from ") + plainText(lo);
+    const std::string from = (isAbove ? "above " : "from ") + exactText(lo);
     if (hi >= kFinite) return isAbove ? from : from + " on";
-    return from + (isAbove ? " and up to " : open == Open::High ? " to below " : " to ") + plainText(hi);
+    return from + (isAbove ? " and up to " : open == Open::High ? " to below " : " to ") + exactText(hi);
 }
 
 bool isNumber(const SettingValue& value) {
@@ -138,14 +144,10 @@ std::string allowedText(const Setting& setting, const void* settings) {
         if (setting.none != nullptr) names.emplace_back(setting.none);
         return anyOf(names);
     };
-    constexpr const char* kColor = "R,G,B from 0 to 1, or #rrggbb";
-    return std::visit(
-        Overloaded{[](bool*) { return std::string("true or false"); }, [&](int*) { return number("a whole number "); },
-                   [&](double*) { return number("a number "); },
-                   [&](std::optional<double>*) { return number("a number "); },
-                   [](std::string*) { return std::string("a name"); }, [](Rgb*) { return std::string(kColor); },
-                   [](std::optional<Rgb>*) { return std::string(kColor); }, name},
-        valueIn(setting, settings));
+    const SettingValue value = valueIn(setting, settings);
+    if (const auto* choice = std::get_if<Choice>(&value)) return name(*choice);
+    if (std::holds_alternative<bool*>(value)) return "true or false";
+    return number(std::holds_alternative<int*>(value) ? "a whole number " : "a number ");
 }
 
 std::string textOf(const Setting& setting, const void* settings) {

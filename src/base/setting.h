@@ -106,9 +106,10 @@ inline constexpr auto member = &MemberOf<Members...>::at;
 /// The one of this key; there is one.
 const Setting& settingOf(std::span<const Setting> settings, std::string_view key);
 
-/// "a number above 0 and up to 8", "thesis or narrow", "true or false". `settings`: any of its kind.
+/// Of a number, a name or a flag: "a number above 0 and up to 8", "thesis or narrow", "true or false". `settings`: any
+/// of its kind.
 std::string allowedText(const Setting& setting, const void* settings);
-/// The value as an option takes it: "0.03", "newton", "#00ff00", "on"; of an empty one Setting::none, else "".
+/// The value as an option takes it: "0.03", "newton", "#00ff00", "true"; of an empty one Setting::none, else "".
 std::string textOf(const Setting& setting, const void* settings);
 /// The value for people: that, with its unit, "yes" or "no".
 std::string shownText(const Setting& setting, const void* settings);

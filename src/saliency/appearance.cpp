@@ -239,7 +239,7 @@ std::span<const Setting> settingsOf<SaliencyOptions>() {
          .range = {0, 1e6}},
         {.key = "background",
          .at = member<&S::background>,
-         .words = "Surroundings",
+         .words = "Colour outside features",
          .help = "The colour that voxels in no feature have for saliency; the background of the picture is another.",
          .option = "saliency-background"},
     };

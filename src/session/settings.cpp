@@ -29,7 +29,7 @@ std::span<const Setting> settingsOf<MeasureSettings>() {
          .choices = kProfiles},
         {.key = "along",
          .at = member<&M::along>,
-         .words = "A&long",
+         .words = "&Face of the grid",
          .help = "The face of the grid that the published profile looks at: front is that of the highest y, top that "
                  "of the highest z, right that of the highest x.",
          .used = isPublished},
@@ -56,7 +56,7 @@ template <>
 std::span<const Setting> settingsOf<AdaptSettings>() {
     using A = AdaptSettings;
     constexpr auto adapts = [](const void* a) { return static_cast<const A*>(a)->mode != A::Mode::Static; };
-    static constexpr const char* kModes[] = {"by hand", "refined", "optimized"};
+    static constexpr const char* kModes[] = {"static", "refine", "optimize"};
     static const Setting kSettings[] = {
         {.key = "mode",
          .at = member<&A::mode>,
@@ -138,6 +138,7 @@ std::span<const Setting> settingsOf<HsbMapping>() {
          .help = "The factor of saturation: values of 1/a and more are fully saturated. Automatic: 95 % of those above "
                  "0 are not clipped.",
          .range = {0, kLargestScale},
+         .none = "auto",
          .option = "",
          .used = hasSaturation},
         {.key = "b",
@@ -146,6 +147,7 @@ std::span<const Setting> settingsOf<HsbMapping>() {
          .help = "The factor of darkness: values of 1/b and more are black. Automatic: 95 % of those above 0 are not "
                  "clipped.",
          .range = {0, kLargestScale},
+         .none = "auto",
          .option = "",
          .used = hasBrightness},
     };
@@ -191,7 +193,7 @@ template <>
 std::span<const Setting> settingsOf<DisplaySettings>() {
     using D = DisplaySettings;
     constexpr auto isComposite = [](const void* d) { return static_cast<const D*>(d)->mode == RenderMode::Composite; };
-    static constexpr const char* kModes[] = {"Composite", "Maximum", "Minimum", "Average", "First surface"};
+    static constexpr const char* kModes[] = {"Composite", "Maximum (MIP)", "Minimum (MinIP)", "Average", "Surfaces"};
     static const Setting kSettings[] = {
         {.key = "mode",
          .at = member<&D::mode>,
@@ -206,8 +208,8 @@ std::span<const Setting> settingsOf<DisplaySettings>() {
          .option = ""},
         {.key = "background_top",
          .at = member<&D::backgroundTop>,
-         .words = "To the top",
-         .help = "The colour at the top of the picture, where it is another.",
+         .words = "Background at the top",
+         .help = "The colour at the top of the picture, if it differs from the bottom.",
          .option = ""},
         {.key = "finest_step",
          .at = member<&D::finestStep>,
@@ -236,13 +238,11 @@ std::span<const Setting> settingsOf<RefineSettings>() {
 template <>
 std::span<const Setting> settingsOf<SliceViews>() {
     using S = SliceViews;
-    static constexpr const char* kLayouts[] = {"Volume", "Four views", "Volume and three small ones"};
     static const Setting kSettings[] = {
         {.key = "layout",
          .at = member<&S::layout>,
          .words = "Layout",
          .help = "Which views the window has: the volume alone, four of one size, or the volume and three small ones.",
-         .choices = kLayouts,
          .option = ""},
         {.key = "tf_strength",
          .at = member<&S::tfStrength>,
@@ -261,7 +261,7 @@ std::span<const Setting> settingsOf<FieldView>() {
         {.key = "kind",
          .at = member<&F::kind>,
          .words = "&Field",
-         .help = "Draws what each voxel contributes to this picture in the place of the data, by emission and "
+         .help = "Draws what each voxel contributes to this picture instead of the data, by emission and "
                  "absorption and without light.",
          .none = "none",
          .option = "field"},

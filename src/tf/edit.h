@@ -25,7 +25,7 @@ TransferFunction withFeatureColor(const TransferFunction& tf, int feature, const
 TransferFunction withFeatureName(const TransferFunction& tf, int feature, const std::string& name);
 /// Everything `factor` > 0 times as dense: α of each point becomes 1 − (1 − α)^factor, which multiplies its extinction.
 TransferFunction withDensity(const TransferFunction& tf, double factor);
-inline constexpr double kMostDensity = 16, kLeastDensity = 1 / kMostDensity; ///< what one asks for at a time
+inline constexpr double kMostDensity = 16; ///< what one asks for at a time
 
 /// The peak of one feature; see withFeatureOpacities().
 TransferFunction withFeatureOpacity(const TransferFunction& tf, int feature, double opacity);

@@ -81,7 +81,7 @@ TEST_CASE("frames are chosen by number", "[cli][series]") {
     refused({"--frames", "2:9"}, 2, "give frames from 0 to 5");
     refused({"--frames", "3:1"}, 2, "end before they begin");
     refused({"--frames", "1:2:0"}, 2, "--frames");
-    refused({"--frames", "7"}, 2, "no range of frames");
+    refused({"--frames", "7"}, 2, "not a range of frames");
     refused({"--array", "x"}, 2, "no array");
     refused({"--cache", "0"}, 2, "--cache");
     const Outcome none = w.run({"info", "e_*.nrrd"});

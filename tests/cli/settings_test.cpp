@@ -105,7 +105,9 @@ void walk() {
             CHECK(textOf(setting, &read) == textOf(setting, &wanted));
             if (setting.optionName().empty()) continue;
             CHECK(byOption(setting, text, given) == "");
-            if (!std::holds_alternative<bool*>(value)) CHECK(textOf(setting, &given) == textOf(setting, &wanted));
+            // A flag says one of the two values.
+            if (!std::holds_alternative<bool*>(value) || setting.optionName().starts_with("--no-") == (text == "false"))
+                CHECK(textOf(setting, &given) == textOf(setting, &wanted));
         }
         if (const auto* choice = std::get_if<Choice>(&value)) {
             T a, b;

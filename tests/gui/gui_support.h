@@ -139,6 +139,19 @@ struct OpenWindow {
     }
 };
 
+/// Between channels of pixels, of 255.
+inline int largestDifference(const QImage& a, const QImage& b) {
+    REQUIRE(a.size() == b.size());
+    int largest = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x) {
+            const QRgb p = a.pixel(x, y), q = b.pixel(x, y);
+            for (const int d : {qRed(p) - qRed(q), qGreen(p) - qGreen(q), qBlue(p) - qBlue(q)})
+                largest = std::max(largest, std::abs(d));
+        }
+    return largest;
+}
+
 /// Press, moves and release, as a hand would.
 inline void drag(QWidget& widget, const QPointF& from, const QPointF& to, Qt::MouseButton button = Qt::LeftButton,
                  Qt::KeyboardModifiers modifiers = {}) {

@@ -596,7 +596,7 @@ TEST_CASE("a session with a series comes back at its frame", "[player]") {
     other.window.resize(w.window.size());
     REQUIRE(waitFor([&] { return other.view().size() == w.view().size(); }));
     other.settle();
-    CHECK(other.picture() == before);
+    CHECK(largestDifference(other.picture(), before) <= 4); // of 255: a slow machine draws rays in portions
 }
 
 // By hand, as in pictures_test.cpp.

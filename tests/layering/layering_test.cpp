@@ -275,6 +275,26 @@ TEST_CASE("the rules inside a layer catch what they should", "[layering]") {
     CHECK(circleIn({{"a", {"b"}}, {"b", {"c"}}, {"c", {"d"}}, {"d", {"b"}}}).size() == 3);
 }
 
+TEST_CASE("files that the documents name exist", "[layering]") {
+    const fs::path top(PELLUCID_SOURCE_DIR);
+    std::vector<std::string> files;
+    for (const char* folder : {"src", "app", "shaders", "tests", "scripts", "benchmarks", "cmake"})
+        for (const auto& entry : fs::recursive_directory_iterator(top / folder))
+            if (entry.is_regular_file()) files.push_back("/" + fs::relative(entry.path(), top).generic_string());
+    const std::regex named("`([a-z_/]+\\.(cpp|h|inl|comp|frag|vert|glsl|py|sh))`");
+    int seen = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(top / "docs")) {
+        if (entry.path().extension() != ".md") continue;
+        const std::string text = textOf(entry.path());
+        for (std::sregex_iterator at(text.begin(), text.end(), named), end; at != end; ++at, ++seen) {
+            const std::string name = "/" + at->str(1);
+            INFO(entry.path().filename() << ": " << at->str(1));
+            CHECK(std::any_of(files.begin(), files.end(), [&](const std::string& f) { return f.ends_with(name); }));
+        }
+    }
+    CHECK(seen > 100);
+}
+
 TEST_CASE("a folder with many files says what each is", "[layering]") {
     std::map<fs::path, std::set<std::string>> folders; // headers by folder
     std::map<fs::path, int> files;

@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include "optimize/solve/block_tridiagonal.h"
 #include "optimize/solve/boxed_step.h"
 #include "optimize/solve/least_variance.h"
 #include "optimize/solve/log_depths.h"
@@ -316,4 +317,33 @@ TEST_CASE("a search begins inside its limits, with what is wanted above 0 and th
     for (const double a : {1e-6, 0.01, 0.5, 0.999}) CHECK(opacityOfLogDepth(logDepthOf(a)) == Approx(a).epsilon(1e-9));
     CHECK(logDepthOf(0) == logDepthOf(kLeastOpacity));
     CHECK(logDepthOf(1) == logDepthOf(kMostOpacity));
+}
+
+TEST_CASE("blocks that are coupled with their neighbours are solved as the whole matrix is", "[solve]") {
+    for (const int n : {1, 2, 5, 8})
+        for (const int blocks : {1, 2, 3, 20}) {
+            INFO(blocks << " blocks of " << n << " unknowns");
+            std::mt19937 random(static_cast<std::uint32_t>(100 * n + blocks));
+            std::uniform_real_distribution<double> unit(-1, 1);
+            const auto some = [&](int rows, int columns) {
+                return Matrix::NullaryExpr(rows, columns, [&] { return unit(random); }).eval();
+            };
+            std::vector<Matrix> own, beside;
+            Matrix whole = Matrix::Zero(n * blocks, n * blocks);
+            for (int i = 0; i < blocks; ++i) {
+                beside.push_back(some(n, n)); // not symmetric
+                const Matrix root = some(n, n);
+                // Positive definite: the entries of a row of the blocks beside it sum to at most 2n.
+                own.push_back(root.transpose() * root + 2 * n * Matrix::Identity(n, n));
+                whole.block(n * i, n * i, n, n) = own.back();
+                if (i == 0) continue;
+                whole.block(n * i, n * (i - 1), n, n) = -beside.back();
+                whole.block(n * (i - 1), n * i, n, n) = -beside.back().transpose();
+            }
+            const Matrix b = some(n, blocks);
+            const Matrix x = solveBlockTridiagonal(own, beside, b);
+            const Vector expected = whole.partialPivLu().solve(Vector(b.reshaped()));
+            CHECK((Vector(x.reshaped()) - expected).lpNorm<Eigen::Infinity>() <
+                  1e-11 * expected.lpNorm<Eigen::Infinity>());
+        }
 }

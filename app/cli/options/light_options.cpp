@@ -15,6 +15,13 @@ namespace {
 /// What --light takes: the settings that count where there is light.
 constexpr std::array kParts{"ambient", "diffuse", "specular", "shininess"};
 
+/// "ambient (from 0 to 2; default 0.35)".
+std::string rangeOfPart(const std::string& key) {
+    const Light usual;
+    const Setting& setting = settingOf(settingsOf<Light>(), key);
+    return key + " (" + setting.range.text() + "; default " + textOf(setting, &usual) + ")";
+}
+
 Vec3 parseDirection(const std::string& text, const std::string& option) {
     const std::vector<double> v = parseReals(text, option, 3, "X,Y,Z: right, up and toward the viewer");
     const Vec3 direction{v[0], v[1], v[2]};
@@ -50,7 +57,7 @@ void LightOptions::add(CLI::App& app) {
     addValue(
         app, "--light", "KEY=VALUE,...",
         [this](const std::string& text, const std::string& option) { takeParts(text, option); },
-        "any of ambient, diffuse, specular (0 to 2; default 0.35, 0.65, 0.25) and shininess (1 to 1000; default 24)",
+        "any of " + joined(kParts, ", ", rangeOfPart),
         group);
     addValue(app, "--light-direction", "X,Y,Z", direction, parseDirection,
              "where the light comes from: right, up and toward the viewer (default 0,0,1, from the eye)", group);

@@ -12,7 +12,7 @@ constexpr const char* kGroup = "Slice";
 SliceOptions::At parseSlice(const std::string& text, const std::string& option) {
     const std::size_t axis = text.size() > 2 && text[1] == ':' ? std::string("xyz").find(text[0]) : std::string::npos;
     if (axis == std::string::npos)
-        throw UsageError("'" + text + "' is no slice", option,
+        throw UsageError("'" + text + "' is not a slice", option,
                          "give x:P, y:P or z:P with P from 0 to 1, a fraction of the box");
     return {static_cast<int>(axis), parseRealFrom(text.substr(2), option, 0, 1)};
 }

@@ -70,10 +70,8 @@ void set(Session& session, const std::string& key, const std::string& value) {
         setChannel(session, which, value);
     };
     HsbMapping hsb = *session.hsb;
-    const auto degrees = [&] { return parseRealFrom(value, kHsb, -360, 360); };
-    const auto scale = [&]() -> std::optional<double> {
-        if (value == "auto") return {};
-        return parseRealFrom(value, kHsb, 0, kLargestScale);
+    const auto take = [&](std::string_view number) {
+        atOption(kHsb, [&] { setText(settingOf(settingsOf<HsbMapping>(), number), &hsb, value); });
     };
     if (key == "alpha") return channel(Channel::Opacity);
     if (key == "saturation" || key == "brightness" || key == "hue") {
@@ -83,20 +81,18 @@ void set(Session& session, const std::string& key, const std::string& value) {
         double constant = 0;
         if (which == Channel::Hue && parseNumber(value, constant)) {
             hsb.hue.clear();
-            hsb.hueFrom = degrees();
+            take("hue_from");
         } else if (value == "none") {
             return setChannel(session, which, "");
         } else {
             return channel(which);
         }
     } else if (key == "hue-from") {
-        hsb.hueFrom = degrees();
+        take("hue_from");
     } else if (key == "hue-to") {
-        hsb.hueTo = degrees();
-    } else if (key == "a") {
-        hsb.a = scale();
-    } else if (key == "b") {
-        hsb.b = scale();
+        take("hue_to");
+    } else if (key == "a" || key == "b") {
+        take(key);
     } else {
         throw UsageError("there is no channel '" + key + "'", kHsb, kHsbForm);
     }

@@ -24,7 +24,7 @@ Vec3 parseSpacing(const std::string& text, const std::string& option) {
 FrameRange parseFrames(const std::string& text, const std::string& option) {
     const std::vector<std::string> parts = split(text, ':');
     if (parts.size() < 2 || parts.size() > 3)
-        throw UsageError("'" + text + "' is no range of frames", option,
+        throw UsageError("'" + text + "' is not a range of frames", option,
                          "give A:B or A:B:STEP, the first frame and the last, counted from 0");
     constexpr long long kMost = std::numeric_limits<int>::max();
     FrameRange range;
@@ -97,7 +97,7 @@ VoxelRegion parseVoxelRegion(const std::string& text, const std::string& option)
         std::int64_t lo = 0, hi = 0;
         if (ends.size() != 2 || !parseNumber(ends[0], lo) || !parseNumber(ends[1], hi) || lo < 0 || hi <= lo ||
             hi > kMost)
-            throw UsageError("'" + text + "' is no region", option,
+            throw UsageError("'" + text + "' is not a region", option,
                              "give X0:X1,Y0:Y1,Z0:Z1, the first voxel along each axis and the one after the last");
         region.lo[a] = static_cast<int>(lo);
         region.hi[a] = static_cast<int>(hi);

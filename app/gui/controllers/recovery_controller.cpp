@@ -60,8 +60,12 @@ void RecoveryController::discard() {
 }
 
 void RecoveryController::offerWhenOpen() {
-    connect(&m_opening, &OpenController::opened, this, &RecoveryController::offer, Qt::SingleShotConnection);
-    connect(&m_opening, &OpenController::failed, this, &RecoveryController::offer, Qt::SingleShotConnection);
+    const auto once = std::make_shared<bool>(true); // the first of the two that comes
+    const auto offerOnce = [this, once] {
+        if (std::exchange(*once, false)) offer();
+    };
+    connect(&m_opening, &OpenController::opened, this, offerOnce);
+    connect(&m_opening, &OpenController::failed, this, offerOnce);
 }
 
 void RecoveryController::offer() {

@@ -116,7 +116,7 @@ void addAnnotationActions(Services& services) {
                     [&services] { return services.isEditable(); });
     menu.addCheck(
         "frameAction", QObject::tr("S&how annotations"), "A",
-        QObject::tr("All that stands around the picture, on and off"),
+        QObject::tr("Show or hide all annotations"),
         [&store] { return store.session().reference->on; },
         [&store] {
             editPart(store, &Session::reference, QObject::tr("Annotations"), {},

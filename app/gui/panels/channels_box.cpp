@@ -103,7 +103,8 @@ void ChannelsBox::addHue(QFormLayout& form) {
     m_hueSlider->setRange(0, 359);
     m_hueSlider->setMinimumWidth(40);
     for (QDoubleSpinBox* box : {m_hueFrom, m_hueTo}) {
-        withLook(box, {.lo = -360, .hi = 720, .step = 10, .suffix = tr("°")});
+        const Setting& setting = settingOf(settingsOf<HsbMapping>(), box == m_hueTo ? "hue_to" : "hue_from");
+        withLook(box, {.lo = setting.range.lo, .hi = setting.range.hi, .step = 10, .suffix = setting.unit});
         connect(box, &QDoubleSpinBox::valueChanged, this,
                 [=, this](double value) { edit(tr("Hue"), box->objectName(), hueChange(box == m_hueTo, value)); });
     }

@@ -242,7 +242,7 @@ void DensitySlider::rest() {
                             textOf(m_curve->curve.strongest().coverage.coverage));
     }
     m_slider->setToolTip(tip);
-    QString value = tr("Coverage: mean alpha over the pixels whose rays meet a feature that is drawn");
+    QString value = tr("Coverage: mean alpha of the pixels that show a feature");
     if (measures && measures->coverage && measures->coverage->covers.size() == m_services.scene().tf.features.size())
         for (std::size_t f = 0; f < measures->coverage->covers.size(); ++f)
             value += tr("\n%1: %2 of alpha where it is seen")

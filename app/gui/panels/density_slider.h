@@ -18,11 +18,11 @@ namespace pellucid::gui {
 
 class Services;
 
-/// Moves along the curve of equal shares (optimize/density_curve.h), from its faint end to its strong one. The curve of
-/// the present shares is computed after an optimization, or when the slider is touched for the first time; it is kept
-/// for as long as the scene lies on it. The slider's place is part of the session. While the slider is held the picture
-/// follows; letting go is one undo step, and keys in a row are one. With the button beside it, it scales all opacities
-/// alike: then the slider is in its middle at × 1 and goes back there.
+/// Moves along the curve of equal shares (optimize/answer/density_curve.h), from its faint end to its strong one. The
+/// curve of the present shares is computed after an optimization, or when the slider is touched for the first time; it
+/// is kept for as long as the scene lies on it. The slider's place is part of the session. While the slider is held the
+/// picture follows; letting go is one undo step, and keys in a row are one. With the button beside it, it scales all
+/// opacities alike: then the slider is in its middle at × 1 and goes back there.
 class DensitySlider : public QWidget {
     Q_OBJECT
 public:

@@ -19,12 +19,11 @@ namespace pellucid::gui {
 namespace {
 
 /// In the order of RenderMode.
-const std::array kModes{
-    std::pair{QT_TR_NOOP("Composite"), QT_TR_NOOP("Emission and absorption by the transfer function")},
-    std::pair{QT_TR_NOOP("Maximum (MIP)"), QT_TR_NOOP("The largest value along each ray, as grey")},
-    std::pair{QT_TR_NOOP("Minimum (MinIP)"), QT_TR_NOOP("The smallest value along each ray, as grey")},
-    std::pair{QT_TR_NOOP("Average"), QT_TR_NOOP("The mean value along each ray, as grey: like an X-ray")},
-    std::pair{QT_TR_NOOP("Surfaces"), QT_TR_NOOP("The first surface of each feature")}};
+const std::array kModeTips{QT_TR_NOOP("Emission and absorption by the transfer function"),
+                           QT_TR_NOOP("The largest value along each ray, as grey"),
+                           QT_TR_NOOP("The smallest value along each ray, as grey"),
+                           QT_TR_NOOP("The mean value along each ray, as grey: like an X-ray"),
+                           QT_TR_NOOP("The first surface of each feature")};
 
 constexpr double kCoarsestFinest = 0.5,
                  kMostFinest = kFinestStep; ///< offered as the finest step, and powers of 2 between
@@ -56,7 +55,7 @@ private:
                  "to this, where the picture would change by 1/255 otherwise. Long steps leave rings where\n"
                  "opacity rises steeply. d0 is the smallest distance of voxels"));
     QDoubleSpinBox* m_lo = named(new QDoubleSpinBox(this), "windowLo",
-                                 tr("Value of intensity 0, in the unit of the data: lower ones are drawn like it"));
+                                 tr("Value of intensity 0, in the unit of the data: lower values look the same"));
     QDoubleSpinBox* m_hi = named(new QDoubleSpinBox(this), "windowHi",
                                  tr("Value of intensity 1, in the unit of the data: higher ones are drawn like it"));
     QPushButton* m_wholeRange = named(new QPushButton(tr("&All values"), this), "wholeRangeButton",
@@ -110,11 +109,8 @@ DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget*
 void DisplayPanel::addRows(QFormLayout& form) {
     auto* rows = new SettingRows(m_services, form, settingPart<DisplaySettings>(&Session::display));
     auto* modes = static_cast<QComboBox*>(rows->add("mode", {.id = "modeCombo"}));
-    for (int i = 0; i < modes->count(); ++i) {
-        const auto& [text, tip] = kModes[static_cast<std::size_t>(i)];
-        modes->setItemText(i, tr(text));
-        modes->setItemData(i, tr(tip), Qt::ToolTipRole);
-    }
+    for (int i = 0; i < modes->count(); ++i)
+        modes->setItemData(i, tr(kModeTips[static_cast<std::size_t>(i)]), Qt::ToolTipRole);
     rows->add("background", {.id = "backgroundColor"});
     rows->add("background_top", {.id = "gradientCheck",
                                  .colorId = "backgroundTopColor",

@@ -224,7 +224,7 @@ QToolButton* PlayerPanel::button(QAction& does, const char* name, const QIcon& i
 }
 
 QLayout* PlayerPanel::adaptRow() {
-    m_mode->addItems({tr("static"), tr("refine"), tr("optimize")});
+    for (const char* mode : settingOf(settingsOf<AdaptSettings>(), "mode").choices) m_mode->addItem(tr(mode));
     connect(m_mode, &QComboBox::activated, this,
             [this](int index) { m_adapting.setMode(static_cast<AdaptSettings::Mode>(index)); });
     m_coherence->setRange(0, kCoherenceSteps);

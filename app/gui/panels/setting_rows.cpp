@@ -12,6 +12,7 @@
 #include <QSlider>
 #include <QSpinBox>
 
+#include "base/check.h"
 #include "services/services.h"
 #include "widgets/controls.h"
 #include "widgets/number_box.h"
@@ -22,7 +23,8 @@ namespace pellucid::gui {
 namespace {
 
 constexpr int kSliderSteps = 200;
-constexpr int kTipWidth = 90; ///< letters
+constexpr int kTipWidth = 90;                   ///< letters
+constexpr const char* kPressedAt = "pressedAt"; ///< the place of a slider when the hand took it
 
 /// A value that may be optional or not; empty: none.
 template <class T>
@@ -48,6 +50,11 @@ std::pair<double, double> shownEnds(const Setting& setting, const RowLook& look)
             std::min(setting.range.hi * look.factor, 1e9) - (setting.range.open == Open::High ? smallest : 0)};
 }
 
+/// What stands behind a number.
+QString suffixOf(const Setting& setting, const RowLook& look) {
+    return look.suffix.isEmpty() ? QString::fromStdString(setting.unitText()) : look.suffix;
+}
+
 /// Sets a number that is given as it is shown.
 std::function<void(void*)> writeOf(const Setting& setting, const RowLook& look, double shown) {
     return [&setting, number = shown / look.factor](void* settings) { setMaybe<double>(setting, settings, number); };
@@ -58,13 +65,15 @@ T& valueIn(const Setting& setting, const void* settings) {
     return *std::get<T*>(setting.at(const_cast<void*>(settings)));
 }
 
-/// What a setting does, with its range and unit, in lines of a tool tip.
-QString tipOf(const Setting& setting) {
+/// What a setting does, with its range and unit as they are shown, in lines of a tool tip.
+QString tipOf(const Setting& setting, const RowLook& look, bool hasNumber) {
     QString text = QString::fromUtf8(setting.help);
-    const NumberRange usual; // of what is no number, too
-    if (*setting.unit != '\0' || setting.range.lo != usual.lo || setting.range.hi != usual.hi ||
-        setting.range.open != usual.open)
-        text += QString::fromStdString(" (" + setting.range.text() + setting.unitText() + ")");
+    if (hasNumber) {
+        NumberRange range = setting.range;
+        range.lo *= look.factor;
+        if (range.hi < NumberRange::kFinite) range.hi *= look.factor;
+        text += QString::fromStdString(" (" + range.text()) + suffixOf(setting, look) + ")";
+    }
     QString lines;
     int length = 0;
     for (const QString& word : text.split(' ')) {
@@ -121,11 +130,14 @@ QWidget* SettingRows::add(const char* key, const RowLook& look) {
         controls.push_back(makeChoice(setting));
     else if (std::holds_alternative<Rgb*>(kind) || std::holds_alternative<std::optional<Rgb>*>(kind))
         addColor(setting, look, controls);
-    else
+    else {
+        PELLUCID_CHECK(isNumber(kind));
         addNumber(setting, look, controls);
+    }
     controls.front()->setObjectName(look.id);
     m_rows.push_back({&setting, controls.front()});
-    for (QWidget* control : controls) control->setToolTip(tipOf(setting));
+    const QString tip = tipOf(setting, look, isNumber(kind));
+    for (QWidget* control : controls) control->setToolTip(tip);
     m_show.push_back([this, &setting, controls] {
         for (QWidget* control : controls) control->setEnabled(m_services.isEditable() && setting.isUsed(present()));
     });
@@ -136,7 +148,7 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
     const auto [lowest, highest] = shownEnds(setting, look);
     auto* box = new NumberBox;
     withLook(box, {lowest, highest, look.decimals, look.step});
-    box->setSuffix(look.suffix.isEmpty() ? QString::fromStdString(setting.unitText()) : look.suffix);
+    box->setSuffix(suffixOf(setting, look));
     connect(box, &QDoubleSpinBox::valueChanged, this,
             [this, &setting, look](double shown) { edit(setting, look.id, writeOf(setting, look, shown)); });
     controls.push_back(box);
@@ -182,8 +194,11 @@ QSlider* SettingRows::makeSlider(const Setting& setting, const RowLook& look, co
         if (!slider->isSliderDown()) return edit(setting, look.id, writeAt(place));
         if (m_isFast()) m_preview(textOf(setting), changeOf(setting, writeAt(place)));
     });
+    connect(slider, &QSlider::sliderPressed, slider, [slider] { slider->setProperty(kPressedAt, slider->value()); });
     connect(slider, &QSlider::sliderReleased, this, [=, this, &setting] {
-        m_isFast() ? m_services.store().commit() : edit(setting, {}, writeAt(slider->value()));
+        m_services.store().commit(); // what was previewed
+        // A click without a move keeps a number that lies between two places.
+        if (slider->property(kPressedAt) != slider->value()) edit(setting, {}, writeAt(slider->value()));
     });
     return slider;
 }
@@ -193,7 +208,10 @@ QToolButton* SettingRows::makeAutomatic(const Setting& setting, const RowLook& l
     automatic->setCheckable(true);
     connect(automatic, &QToolButton::clicked, this, [this, &setting, look, &box](bool on) {
         std::optional<double> number; // what stood for none stays, with all its digits
-        if (!on) number = look.automatic ? look.automatic() : box.value() / look.factor;
+        if (!on && look.automatic)    // of a black picture there may be none that is allowed
+            number = std::clamp(look.automatic(), box.minimum() / look.factor, box.maximum() / look.factor);
+        else if (!on)
+            number = box.value() / look.factor;
         edit(setting, {}, [&setting, number](void* settings) { setMaybe<double>(setting, settings, number); });
     });
     return automatic;

@@ -175,7 +175,7 @@ QString TimeStrip::tipAt(const QPointF& at) const {
     if (mark.tfKey) lines << tr("key: a transfer function made by hand");
     if (mark.targetKey) lines << tr("key: targets of its own");
     if (mark.adapted)
-        lines << (mark.stale ? tr("its transfer function is of other inputs, and will be made anew")
+        lines << (mark.stale ? tr("its transfer function is out of date and will be recomputed")
                              : tr("a transfer function was made for it"));
     return lines.join('\n');
 }

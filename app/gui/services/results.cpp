@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "optimize/objective.h"
+#include "session/live_targets.h"
 #include "tf/shown_tf.h"
 
 namespace pellucid::gui {
@@ -10,11 +11,6 @@ namespace {
 
 constexpr std::size_t kMostKnown = 64;
 constexpr qint64 kLeastPause = 10; // milliseconds between two measurements while the hand moves
-
-bool sameNames(const TransferFunction& a, const TransferFunction& b) {
-    return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
-                      [](const Feature& f, const Feature& g) { return f.id == g.id; });
-}
 
 } // namespace
 
@@ -74,7 +70,7 @@ void Results::follow(const Scene& before, const Scene& after) {
             if (shown->input.volume != after.volume) shown->input.volume.reset();
     }
     if (input == m_present) {
-        if (!sameNames(before.tf, after.tf)) Q_EMIT changed();
+        if (!sameFeatures(before.tf, after.tf)) Q_EMIT changed();
         return;
     }
     m_present = std::move(input);
@@ -135,7 +131,7 @@ void Results::show(const Figures& figures) {
 bool Results::lacksCoverage() const { return measuresAreCurrent() && !m_measured.measures->coverage; }
 
 bool Results::isShowable(const Figures& figures) const {
-    return m_store.hasVolume() && sameNames(figures.input.tf, m_store.scene().tf);
+    return m_store.hasVolume() && sameFeatures(figures.input.tf, m_store.scene().tf);
 }
 
 bool Results::isPresent(const Figures& figures) const { return m_store.hasVolume() && figures.input == m_present; }

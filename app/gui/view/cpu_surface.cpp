@@ -16,7 +16,6 @@ namespace pellucid::gui {
 namespace {
 
 constexpr double kPictureSeconds = 0.045; ///< that a picture may take while the scene changes
-constexpr int kRest = 120;                ///< milliseconds without a change, before the full picture is begun
 constexpr int kGrowEvery = 40;            ///< milliseconds between looks at what has grown
 /// Of the picture before the last. Rays one pixel apart, samples one voxel apart: what lies between two samples counts
 /// in full, by running integrals.

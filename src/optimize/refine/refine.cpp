@@ -99,7 +99,7 @@ std::span<const Setting> settingsOf<RefineSteps>() {
          .used = isGreedy},
         {.key = "max_iterations",
          .at = member<&R::maxIterations>,
-         .words = "&At most",
+         .words = "Most &iterations",
          .help = "The most iterations that a refinement makes.",
          .range = {0, 1e9},
          .unit = "iterations",

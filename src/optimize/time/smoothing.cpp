@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "base/error.h"
+#include "optimize/solve/block_tridiagonal.h"
 #include "optimize/solve/log_depths.h"
 
 namespace pellucid {
@@ -144,8 +145,7 @@ private:
         return d;
     }
 
-    /// Jumps are weighed by what they are at y. Frames are coupled with their neighbours alone: the matrix is made of
-    /// blocks, `own` on its diagonal and −`jumps` left of them, and is factorized block by block.
+    /// Jumps are weighed by what they are at y.
     Matrix weightedMinimum(double weight, double none, const Matrix& y, const Eigen::ArrayXXi& held) const {
         const std::size_t frames = m_frames.size();
         std::vector<Matrix> own, jumps;
@@ -173,19 +173,7 @@ private:
                 own[t](f, f) += kHeld * most;
                 b(f, t) += kHeld * most * (held(f, t) > 0 ? m_highest(f, t) : m_lowest(f, t));
             }
-        std::vector<Eigen::LDLT<Matrix>> factors;
-        for (std::size_t t = 0; t < frames; ++t) {
-            if (t > 0) {
-                own[t] -= jumps[t].transpose() * factors[t - 1].solve(jumps[t]);
-                b.col(t) += jumps[t].transpose() * factors[t - 1].solve(b.col(t - 1));
-            }
-            factors.emplace_back(own[t]);
-        }
-        for (std::size_t t = frames; t-- > 0;) {
-            if (t + 1 < frames) b.col(t) += jumps[t + 1] * b.col(t + 1);
-            b.col(t) = factors[t].solve(b.col(t)).eval();
-        }
-        return b;
+        return solveBlockTridiagonal(std::move(own), jumps, std::move(b));
     }
 
     /// What is left of a jump that there is no reason for is none.

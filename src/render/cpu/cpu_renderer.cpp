@@ -12,10 +12,10 @@
 
 #include "base/parallel.h"
 #include "render/ambient_occlusion.h"
-#include "render/cpu/ray_blocks.h"
 #include "render/cpu/ray_packets.h"
 #include "render/cpu/ray_table.h"
 #include "render/ground_raster.h"
+#include "render/ray_blocks.h"
 
 namespace pellucid {
 

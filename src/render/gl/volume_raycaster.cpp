@@ -14,7 +14,6 @@
 #include "base/error.h"
 #include "render/ambient_occlusion.h"
 #include "render/box_in_image.h"
-#include "render/cpu/ray_blocks.h"
 #include "render/cpu/ray_packets.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/picture_rays.h"
@@ -22,6 +21,7 @@
 #include "render/gl/volume_bricks.h"
 #include "render/gl/volume_texture.h"
 #include "render/ground_raster.h"
+#include "render/ray_blocks.h"
 #include "tf/tf_table.h"
 
 namespace pellucid::gl {

@@ -1,4 +1,4 @@
-#include "render/cpu/ray_blocks.h"
+#include "render/ray_blocks.h"
 
 #include <algorithm>
 
