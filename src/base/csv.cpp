@@ -1,7 +1,6 @@
 #include "base/csv.h"
 
-#include <array>
-#include <charconv>
+#include "base/round_numbers.h"
 
 namespace pellucid {
 
@@ -25,8 +24,7 @@ CsvTable& CsvTable::operator<<(std::string_view text) {
 }
 
 CsvTable& CsvTable::operator<<(double number) {
-    std::array<char, 64> buffer{};
-    add({buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr});
+    add(exactText(number));
     return *this;
 }
 

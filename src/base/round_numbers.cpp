@@ -40,6 +40,11 @@ std::string fixedText(double value, int decimals) { return printed(value, std::c
 std::string plainText(double value) { return printed(value, std::chars_format::general, 6); }
 std::string shortText(double value) { return printed(value, std::chars_format::general, 4); }
 
+std::string exactText(double value) {
+    std::array<char, 40> buffer{};
+    return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
 std::string numberText(double value, double span) {
     const double size = std::max(std::abs(value), span);
     if (size != 0 && (size >= 1e7 || size < 1e-3)) return shortText(value);

@@ -19,6 +19,7 @@ std::string numberText(double value, double span);
 std::string fixedText(double value, int decimals); ///< "0.407"
 std::string plainText(double value);               ///< at most six significant digits: "0.957031", "1e+06"
 std::string shortText(double value);               ///< at most four significant digits: "0.0312", "1.2e-05"
+std::string exactText(double value);               ///< the fewest digits that read back as the same number
 
 /// Decimals that tell apart values in a range of width `span`, [0, 12].
 int decimalsFor(double span);

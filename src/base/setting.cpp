@@ -25,9 +25,9 @@ template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
 /// With all its digits; of a whole number no exponent.
-std::string exactText(double value) {
+std::string wholeOrExactText(double value) {
     constexpr double kMostWhole = 1e15;
-    return std::abs(value) < kMostWhole && value == std::floor(value) ? fixedText(value, 0) : json(value).dump();
+    return std::abs(value) < kMostWhole && value == std::floor(value) ? fixedText(value, 0) : exactText(value);
 }
 
 /// What files say for a number without end.
@@ -41,7 +41,7 @@ SettingValue valueIn(const Setting& setting, const void* settings) { return sett
 }
 
 void checkNumber(const Setting& setting, const void* settings, double value) {
-    if (!setting.range.holds(value)) refuse(setting, settings, exactText(value) + " is out of range");
+    if (!setting.range.holds(value)) refuse(setting, settings, wholeOrExactText(value) + " is out of range");
 }
 
 double numberFrom(const Setting& setting, const void* settings, const std::string& text) {
@@ -69,7 +69,7 @@ void choose(const Setting& setting, const void* settings, const Choice& choice, 
         refuse(setting, settings, std::string("there is no ") + choice.kind + " '" + text + "'");
 }
 
-std::string numberText(double value) { return std::isinf(value) ? "inf" : json(value).dump(); }
+std::string numberText(double value) { return exactText(value); }
 std::string colorText(const Rgb& color) {
     const json j = jsonFromColor(color);
     return j.is_string() ? j.get<std::string>()
@@ -104,9 +104,9 @@ json jsonOf(const Setting& setting, const void* settings) {
 
 std::string NumberRange::text() const {
     const bool isAbove = open == Open::Low;
-    const std::string from = (isAbove ? "above " : "from ") + exactText(lo);
+    const std::string from = (isAbove ? "above " : "from ") + wholeOrExactText(lo);
     if (hi >= kFinite) return isAbove ? from : from + " on";
-    return from + (isAbove ? " and up to " : open == Open::High ? " to below " : " to ") + exactText(hi);
+    return from + (isAbove ? " and up to " : open == Open::High ? " to below " : " to ") + wholeOrExactText(hi);
 }
 
 bool isNumber(const SettingValue& value) {

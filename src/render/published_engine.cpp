@@ -44,9 +44,10 @@ Passage passageOf(const View& view, const Geometry& g) {
     int axis = 0;
     for (int a = 1; a < 3; ++a)
         if (std::abs(direction[a]) > std::abs(direction[axis])) axis = a;
+    bool isAligned = true;
     for (int a = 0; a < 3; ++a)
-        if (a != axis && std::abs(direction[a]) > kAligned * std::abs(direction[axis])) axis = -1;
-    if (axis < 0 || view.camera.projection != Projection::Orthographic)
+        isAligned = isAligned && (a == axis || std::abs(direction[a]) <= kAligned * std::abs(direction[axis]));
+    if (!isAligned || view.camera.projection != Projection::Orthographic)
         throw UsageError("the published profile looks along an axis of the grid, in parallel", "camera",
                          "choose one of its six views, or the other definitions");
     const std::array<std::ptrdiff_t, 3> step{1, g.dims.x, static_cast<std::ptrdiff_t>(g.dims.x) * g.dims.y};

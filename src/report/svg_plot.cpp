@@ -2,21 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
+
+#include "base/round_numbers.h"
 
 namespace pellucid {
 
 namespace {
 
 /// Hundredths of a pixel, the same in every locale.
-std::string number(double value) {
-    std::array<char, 64> buffer{};
-    const double rounded = std::round(value * 100) / 100 + 0.0;
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), rounded).ptr;
-    return {buffer.data(), end};
-}
+std::string number(double value) { return exactText(std::round(value * 100) / 100 + 0.0); }
 
 struct Ink {
     const char *name, *light, *dark;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <ranges>
 
+#include "base/round_numbers.h"
 #include "volume/excerpt.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
@@ -111,7 +112,7 @@ Volume loadVolume(const VolumeSource& source, const JobControl& job) {
     else if (volume.isConstant())
         volume.notices.push_back(
             (volume.invalidCount() > 0 ? "all valid voxels have the value " : "all voxels have the value ") +
-            wordOf(volume.dataRange().lo));
+            exactText(volume.dataRange().lo));
     if (source.range) volume = volume.withRange(*source.range);
     job.report(1.0);
     return volume;

@@ -23,6 +23,15 @@ TEST_CASE("numbers have the digits that their range needs", "[axis]") {
     CHECK(numberText(-1e-12, 100) == "0");
 }
 
+TEST_CASE("a number in full reads back as the same number, in as few digits as that takes", "[numbers]") {
+    CHECK(exactText(0.1) == "0.1");
+    CHECK(exactText(1.0 / 3) == "0.3333333333333333");
+    CHECK(exactText(-2) == "-2");
+    CHECK(exactText(1e-300) == "1e-300");
+    CHECK(exactText(std::nan("")) == "nan");
+    CHECK(exactText(std::numeric_limits<double>::infinity()) == "inf");
+}
+
 TEST_CASE("a round number is the largest of 1, 2, 5 times a power of ten that fits", "[axis]") {
     CHECK(roundNumberBelow(9.99) == Approx(5));
     CHECK(roundNumberBelow(10) == Approx(10));

@@ -217,7 +217,7 @@ TEST_CASE("a session is saved and opened in the window as it was", "[session]") 
     other.opening().openPath(path);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     CHECK(identical(other.services().store().session(), saved));
-    CHECK(other.picture() == picture);
+    CHECK(waitFor([&] { return other.picture() == picture; }));
     REQUIRE(other.document().measuresAreCurrent());
     CHECK(other.document().measures()->visibilityHistogram == measures.visibilityHistogram);
     CHECK_FALSE(other.window.isWindowModified());

@@ -539,7 +539,6 @@ TEST_CASE("a session with several variables and a ground is saved and opened", "
     CHECK(*sessionOfWindow(w).variables == *session.variables);
     CHECK(*sessionOfWindow(w).ground == *session.ground);
     CHECK(sessionOfWindow(w).frame == kFrames - 1);
-    QTest::qWait(100); // docks arrange themselves
-    CHECK(w.picture() == saved);
+    CHECK(waitFor([&] { return w.picture() == saved; })); // docks arrange themselves
     REQUIRE(waitFor([&] { return rowOf(w, "rain").text(3).contains("10×10×10"); }));
 }

@@ -57,8 +57,7 @@ void LightOptions::add(CLI::App& app) {
     addValue(
         app, "--light", "KEY=VALUE,...",
         [this](const std::string& text, const std::string& option) { takeParts(text, option); },
-        "any of " + joined(kParts, ", ", rangeOfPart),
-        group);
+        "any of " + joined(kParts, ", ", rangeOfPart), group);
     addValue(app, "--light-direction", "X,Y,Z", direction, parseDirection,
              "where the light comes from: right, up and toward the viewer (default 0,0,1, from the eye)", group);
     given.add(app, group, {"gradient_opacity", "occlusion", "depth_cue", "silhouettes"});

@@ -115,8 +115,7 @@ void addAnnotationActions(Services& services) {
     ActionMenu menu(services.actions(), QObject::tr("&View") + "/" + QObject::tr("A&nnotations"),
                     [&services] { return services.isEditable(); });
     menu.addCheck(
-        "frameAction", QObject::tr("S&how annotations"), "A",
-        QObject::tr("Show or hide all annotations"),
+        "frameAction", QObject::tr("S&how annotations"), "A", QObject::tr("Show or hide all annotations"),
         [&store] { return store.session().reference->on; },
         [&store] {
             editPart(store, &Session::reference, QObject::tr("Annotations"), {},

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include "base/atomic_file.h"
+#include "base/round_numbers.h"
 #include "volume/formats/text_header.h"
 #include "volume/loader.h"
 #include "volume/voxel_loops.h"
@@ -18,7 +19,9 @@ const char* nrrdType(SampleType type) {
 }
 
 std::string headerText(const Geometry& g, SampleType type) {
-    const auto vector = [](const Vec3& v) { return "(" + wordOf(v.x) + "," + wordOf(v.y) + "," + wordOf(v.z) + ")"; };
+    const auto vector = [](const Vec3& v) {
+        return "(" + exactText(v.x) + "," + exactText(v.y) + "," + exactText(v.z) + ")";
+    };
     // Without a patient the world has a dimension and no name.
     const Mat3 axes = g.worldFromIndex();
     std::string text =

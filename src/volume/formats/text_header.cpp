@@ -1,8 +1,6 @@
 #include "volume/formats/text_header.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -65,11 +63,6 @@ void TextHeader::fail(const std::string& what, const std::string& toDo) const { 
 double numberIn(const std::string& word) {
     double value = 0;
     return parseNumber(word, value) ? value : std::numeric_limits<double>::quiet_NaN();
-}
-
-std::string wordOf(double number) {
-    std::array<char, 40> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
 std::vector<double> finiteNumbers(const std::string& text, const std::string& what, const std::string& path) {

@@ -40,8 +40,6 @@ private:
 
 /// The number that a word is; NaN where it is none.
 double numberIn(const std::string& word);
-/// The shortest word that is this number, in any locale.
-std::string wordOf(double number);
 
 /// The blank-separated numbers of `text`, which the file `path` calls `what`. Throws FileError unless all are finite.
 std::vector<double> finiteNumbers(const std::string& text, const std::string& what, const std::string& path);
