@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What is checked besides the tests: scripts/check.sh [--by SECONDS] [CHECK…], all of them without a name.
+# What is checked besides the tests: scripts/check.sh [--by SECONDS] [--end SECONDS] [CHECK…], all without a name.
 #   format    every C++ file is as clang-format leaves it
 #   headless  the command line builds alone and needs neither Qt nor OpenGL to start
 #   headers   damaged headers of volume files, 2 000 of each format, are read or refused in words
@@ -9,7 +9,8 @@
 #   tsan      no race in the tests that use threads
 #   zink      the tests of OpenGL with another driver: Mesa's zink over its software Vulkan
 #   tidy      clang-tidy has nothing to say of files that differ from PELLUCID_BASE (the commit before this one)
-# --by: no check begins later than so many seconds after now; those left out are named. Exit status 1 where one fails.
+# No check begins later than --by seconds after now, and one that still runs after --end seconds is stopped; neither is a
+# failure, and both are named. Exit status 1 where a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 all=(format headless headers dev asan tsan zink tidy)
@@ -99,10 +100,14 @@ check_tidy() {
 }
 
 by=
+end=
 checks=()
 while [ $# -gt 0 ]; do
     if [ "$1" = --by ]; then
         by=${2:?--by needs seconds}
+        shift
+    elif [ "$1" = --end ]; then
+        end=${2:?--end needs seconds}
         shift
     elif [[ " ${all[*]} " == *" $1 "* ]]; then
         checks+=("$1")
@@ -114,24 +119,30 @@ while [ $# -gt 0 ]; do
 done
 [ ${#checks[@]} -gt 0 ] || checks=("${all[@]}")
 
+# For the script that calls itself below.
+if [ "${PELLUCID_CHECK_ALONE:-}" = "${checks[*]}" ]; then
+    "check_${checks[0]}"
+    exit
+fi
+
 failed=0
 start=$SECONDS
 for check in "${checks[@]}"; do
     began=$SECONDS
-    if [ -n "$by" ] && [ $((began - start)) -ge "$by" ]; then
+    gone=$((began - start))
+    if [ $gone -ge "${by:-$((gone + 1))}" ] || [ $gone -ge "${end:-$((gone + 1))}" ]; then
         echo "check: $check: left out, no time"
         continue
     fi
-    # In a shell of its own: after || or in a condition `set -e` would not end a check at its first error.
-    set +e
-    (
-        set -e
-        "check_$check"
-    )
-    status=$?
-    set -e
+    # A program of its own: what it started can be stopped with it, and `set -e` ends it at its first error.
+    alone=(scripts/check.sh "$check")
+    [ -z "$end" ] || alone=(timeout --kill-after 30 $((end - gone)) "${alone[@]}")
+    status=0
+    PELLUCID_CHECK_ALONE=$check "${alone[@]}" || status=$?
     if [ $status -eq 0 ]; then
         echo "check: $check: passed in $((SECONDS - began)) s"
+    elif [ -n "$end" ] && [ $status -eq 124 ]; then
+        echo "check: $check: stopped after $((SECONDS - began)) s, no time"
     else
         echo "check: $check: FAILED after $((SECONDS - began)) s" >&2
         failed=1

@@ -50,13 +50,6 @@ std::array<std::size_t, 3> shown(const float* pixel) {
 
 } // namespace
 
-double deltaE(const Rgb& a, const Rgb& b) {
-    const auto lab = [](const Rgb& c) {
-        return labOfLinear(linearFromSrgb(c.r), linearFromSrgb(c.g), linearFromSrgb(c.b));
-    };
-    return distance(lab(a), lab(b));
-}
-
 double meanDeltaE(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height)
         throw Error("the pictures differ in size", "colour difference", "draw them in one size");

@@ -3,18 +3,14 @@
 
 #include <vector>
 
-#include "base/color.h"
 #include "render/image.h"
 
 namespace pellucid {
 
-/// CIE76: the distance of two sRGB colours in CIELAB (white point D65). 0: the same; about 2.3: just noticed; 100:
-/// black to white.
-double deltaE(const Rgb& a, const Rgb& b);
-
-/// The mean over all pixels of ΔE between two pictures of one size, of what is seen over black where they are
-/// transparent. Components are rounded to 8 bits, as screens show them. The same bits for any thread count. Throws
-/// Error for pictures of different sizes.
+/// The mean over all pixels of CIE76's ΔE, the distance of two sRGB colours in CIELAB (white point D65), between two
+/// pictures of one size, of what is seen over black where they are transparent. 0: the same; about 2.3: just noticed;
+/// 100: black to white. Components are rounded to 8 bits, as screens show them. The same bits for any thread count.
+/// Throws Error for pictures of different sizes.
 double meanDeltaE(const Image& a, const Image& b);
 
 /// CIELAB of what is seen of each pixel over black: L*, a*, b* one after the other, not rounded.

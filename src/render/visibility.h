@@ -31,7 +31,7 @@ enum class Quality { Normal, High };
 class VisibilityEngine {
 public:
     virtual ~VisibilityEngine() = default;
-    virtual std::string name() const = 0; ///< "reference", "cpu", "gl" or "slices"
+    virtual std::string name() const = 0; ///< as the setting `engine` names it, or "published"
     virtual const Volume& volume() const = 0;
 
     /// Sums per feature of each of `tfs`, which share the features of the first (checked). `weights` may be null.

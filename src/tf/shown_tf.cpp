@@ -42,4 +42,9 @@ std::vector<double> shownShares(const TransferFunction& tf, std::vector<double> 
     return shares;
 }
 
+std::vector<double> withShapesKept(std::vector<double> x, const std::vector<double>& was, double least) {
+    for (std::size_t f = 0; f < x.size(); ++f) x[f] = std::max(x[f], std::min(was[f], least));
+    return x;
+}
+
 } // namespace pellucid

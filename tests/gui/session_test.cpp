@@ -442,22 +442,35 @@ TEST_CASE("what a killed program had done is not lost but for two seconds", "[se
     }
 }
 
+int recoveryFilesIn(const QString& folder) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.toStdString()))
+        count += entry.path().string().ends_with(".recovery.pellucid.json");
+    return count;
+}
+
+/// What a process that ended leaves in the folder of recovery files: its file without its lock.
+void leaveBehind(const QString& folder, const Session& session) {
+    std::string path;
+    {
+        RecoveryFile file(folder.toStdString());
+        file.write(session, "disks");
+        path = file.path();
+        std::filesystem::copy_file(path, path + ".copy");
+    }
+    std::filesystem::rename(path + ".copy", path);
+}
+
 TEST_CASE("work that a crash left behind is offered, restored and kept", "[session]") {
     qputenv("XDG_DATA_HOME", QTemporaryDir().path().toUtf8());
     const QString folder = RecoveryController::folder();
     Session lost;
-    { // A process that ended: its lock is gone, its file is not.
+    {
         const Scene scene = sampleScene("disks", 14, tents(2, 0.3));
         lost = scene.session;
         lost.camera = scene.camera;
-        RecoveryFile file(folder.toStdString());
-        file.write(lost, "disks");
-        std::filesystem::copy_file(file.path(), file.path() + ".copy");
     }
-    for (const auto& entry : std::filesystem::directory_iterator(folder.toStdString())) {
-        const std::string path = entry.path().string();
-        if (path.ends_with(".copy")) std::filesystem::rename(path, path.substr(0, path.size() - 5));
-    }
+    leaveBehind(folder, lost);
     OpenWindow w;
     w.controllers().recovery.start();
     w.controllers().recovery.offer();
@@ -469,11 +482,30 @@ TEST_CASE("work that a crash left behind is offered, restored and kept", "[sessi
     CHECK(w.window.isWindowModified()); // it has no file of its own yet
     // From now on this window keeps it, and the file that was left is gone.
     REQUIRE(waitFor([&] { return recoverableSessions(folder.toStdString()).empty(); }));
-    int kept = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder.toStdString()))
-        kept += entry.path().string().ends_with(".recovery.pellucid.json");
-    CHECK(kept == 1);
+    CHECK(recoveryFilesIn(folder) == 1);
     w.settle();
+    std::filesystem::remove_all(folder.toStdString());
+    qunsetenv("XDG_DATA_HOME");
+}
+
+TEST_CASE("work that cannot be restored yet stays, whatever is opened then", "[session]") {
+    qputenv("XDG_DATA_HOME", QTemporaryDir().path().toUtf8());
+    const QString folder = RecoveryController::folder();
+    Session lost = sampleScene("disks", 14, tents(2, 0.3)).session;
+    editVariable(lost, [](Variable& v) { v.source.path = "gone.nrrd"; });
+    leaveBehind(folder, lost);
+    OpenWindow w;
+    w.controllers().recovery.start();
+    w.controllers().recovery.offer();
+    QSignalSpy failed(&w.opening(), &OpenController::failed), opened(&w.opening(), &OpenController::opened);
+    QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
+    REQUIRE(waitFor([&] { return failed.count() == 1; }));
+    w.opening().openPath("sample:disks");
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.document().setTf(tents(4), "Four");
+    REQUIRE(waitFor([&] { return recoveryFilesIn(folder) == 2; })); // one of this window
+    w.settle();
+    CHECK(recoverableSessions(folder.toStdString()).size() == 1);
     std::filesystem::remove_all(folder.toStdString());
     qunsetenv("XDG_DATA_HOME");
 }

@@ -1,6 +1,7 @@
 // ΔE of colours and pictures.
 #include <catch2/catch.hpp>
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/color_difference.h"
@@ -23,6 +24,12 @@ Image filled(int width, int height, float r, float g, float b, float alpha = 1) 
 } // namespace
 
 TEST_CASE("the difference of colours is their distance in CIELAB", "[deltae]") {
+    const auto deltaE = [](const Rgb& a, const Rgb& b) {
+        const auto pixel = [](const Rgb& c) {
+            return filled(1, 1, static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b));
+        };
+        return meanDeltaE(pixel(a), pixel(b));
+    };
     CHECK(deltaE({0, 0, 0}, {1, 1, 1}) == Approx(100).margin(1e-3)); // L* from 0 to 100
     CHECK(deltaE({0.3, 0.5, 0.2}, {0.3, 0.5, 0.2}) == 0);
     // Red (53.24, 80.09, 67.20), green (87.73, −86.18, 83.18): √(34.49² + 166.27² + 15.98²).

@@ -11,7 +11,7 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kLeastOpacity = 1e-5; // what is scaled to 0 has lost its shape
+constexpr double kLeastOpacity = 1e-5; ///< of features that the hand does not hold
 
 } // namespace
 
@@ -129,9 +129,10 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
         for (std::size_t i = 0; i < update.opacity.size(); ++i) m_wanted[task.tf.features[i].id] = update.opacity[i];
         store.amend([ids = task.tf.features, pinned = m_pinned, wanted = update.opacity](Session& session) {
             if (session.tf() == nullptr || session.tf()->features.size() != ids.size()) return;
-            std::vector<double> x = featureOpacities(*session.tf());
+            const std::vector<double> was = featureOpacities(*session.tf());
+            std::vector<double> x = withShapesKept(wanted, was, kLeastOpacity);
             for (std::size_t i = 0; i < x.size(); ++i)
-                if (!pinned.contains(ids[i].id)) x[i] = std::max(wanted[i], std::min(x[i], kLeastOpacity));
+                if (pinned.contains(ids[i].id)) x[i] = was[i];
             const TransferFunction tf = withShownOpacities(*session.tf(), x);
             if (featureOpacities(tf) != featureOpacities(*session.tf())) session.setTf(tf);
         });

@@ -179,11 +179,12 @@ void OpenController::attempt(const QString& title, const std::function<void()>& 
     }
 }
 
-void OpenController::openRecovered(const SessionFile& file) {
+void OpenController::openRecovered(const SessionFile& file, const std::function<void()>& then) {
     Request request;
     request.inputs.session = file.session;
     request.notices = file.notices;
     request.unsaved = true;
+    request.then = then;
     m_busyText = tr("Restoring…");
     m_open.start(std::move(request), tr("the unsaved work"));
 }
@@ -225,6 +226,7 @@ void OpenController::show(const Request& request, Opened& opened) {
     }
     if (tfFromFile) noteWindow(*m_services.store().session().tf());
     Q_EMIT this->opened();
+    if (request.then) request.then();
     if (opened.tfError) {
         m_services.showError(tr("Cannot open the transfer function"), *opened.tfError);
         Q_EMIT tfFailed(*opened.tfError);

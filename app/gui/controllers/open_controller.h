@@ -31,8 +31,9 @@ public:
     /// start.
     void openVolume(const VolumeSource& source, const QString& tfSpec = {});
     void openSession(const QString& path);
-    /// A session that need not have a file: one that was recovered. It is unsaved.
-    void openRecovered(const SessionFile& file);
+    /// A session that need not have a file: one that was recovered. It is unsaved. `then` once it is open; never where
+    /// that fails or something else is opened meanwhile.
+    void openRecovered(const SessionFile& file, const std::function<void()>& then);
     /// Into the present session, at once.
     void openTf(const QString& specOrPath);
     /// A path from the user: a session or a transfer function by its name, else a volume; what no format knows asks for
@@ -76,6 +77,7 @@ private:
         std::vector<std::string> notices;
         bool tfIsOptional = false; ///< a wrong one is no reason not to show the volume
         bool unsaved = false;
+        std::function<void()> then; ///< once it is open
     };
     struct Opened {
         Scene scene;

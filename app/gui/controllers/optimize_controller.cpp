@@ -13,7 +13,7 @@ namespace {
 
 QString fixed4(double value) { return QString::number(value, 'f', 4); }
 
-constexpr double kLeastStart = 1e-4; ///< opacity of a restart: from 0 there is no way for what scales
+constexpr double kLeastStart = 1e-4; ///< opacity of a restart
 
 } // namespace
 
@@ -158,11 +158,7 @@ void OptimizeController::restart(const View& view) {
     Task task = m_task;
     task.input.view = view;
     if (!m_opacity.empty()) {
-        std::vector<double> x = m_opacity;
-        const std::vector<double> was = featureOpacities(task.tf);
-        for (std::size_t i = 0; i < x.size(); ++i)
-            if (was[i] > 0) x[i] = std::max(x[i], std::min(was[i], kLeastStart));
-        task.tf = withShownOpacities(task.tf, x);
+        task.tf = withShownOpacities(task.tf, withShapesKept(m_opacity, featureOpacities(task.tf), kLeastStart));
         task.input.tf = shownTf(task.tf);
     }
     ++m_restarts;

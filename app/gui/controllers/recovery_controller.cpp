@@ -81,11 +81,8 @@ void RecoveryController::restore(const std::string& path) {
     m_services.attempt(tr("Cannot restore the work"), [&] {
         const SessionFile file = readSession(path);
         if (!m_saving.maybeSave()) return offer();
-        m_opening.openRecovered(file);
         // Once it is there again and written, this window keeps it.
-        connect(
-            &m_opening, &OpenController::opened, this, [this, path] { m_restored.push_back(path); },
-            Qt::SingleShotConnection);
+        m_opening.openRecovered(file, [this, path] { m_restored.push_back(path); });
     });
 }
 
