@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/setting.h"
 #include "output.h"
+#include "render/render_settings.h"
 
 namespace pellucid::cli {
 
@@ -124,7 +125,9 @@ ImageSize parseImageSize(const std::string& text, const std::string& option) {
     const auto parts = split(text, 'x');
     if (parts.size() != 2)
         throw UsageError(quoted(text) + " is not an image size", option, "give WxH in pixels, such as 800x600");
-    const auto side = [&](const std::string& part) { return static_cast<int>(parseInteger(part, option, 1, 16384)); };
+    const auto side = [&](const std::string& part) {
+        return static_cast<int>(parseInteger(part, option, 1, kMostPixels));
+    };
     return {side(parts[0]), side(parts[1])};
 }
 

@@ -45,7 +45,7 @@ std::vector<std::size_t> parseFeatures(const std::string& text, const std::strin
 std::size_t parseFeature(const std::string& text, const std::string& option, const TransferFunction& tf);
 
 struct ImageSize {
-    int width = 512, height = 512; ///< pixels, each in [1, 16384]
+    int width = 512, height = 512; ///< pixels, each in [1, kMostPixels]
 };
 /// "WxH".
 ImageSize parseImageSize(const std::string& text, const std::string& option);

@@ -56,7 +56,7 @@ void fixPoint(TransferFunction& tf, double x) {
 PixelRectangle parseRectangle(const std::string& text, const std::string& option) {
     const std::vector<double> v = parseReals(text, option, 4, "X0,Y0,X1,Y1 in pixels");
     for (const double pixel : v)
-        if (!(pixel >= 0 && pixel <= 16384 && pixel == std::floor(pixel)))
+        if (!(pixel >= 0 && pixel <= kMostPixels && pixel == std::floor(pixel)))
             throw UsageError("'" + text + "' does not name a region of a picture", option,
                              "give whole numbers of pixels");
     const PixelRectangle r{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]),

@@ -63,9 +63,9 @@ std::span<const Setting> settingsOf<Light>() {
 }
 
 void RenderSettings::validate() const {
-    constexpr int kMaxPixels = 16384;
-    if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels)
-        throw UsageError("an image must have 1 to 16384 pixels along each side", "image size", "give such a size");
+    if (width < 1 || height < 1 || width > kMostPixels || height > kMostPixels)
+        throw UsageError("an image must have 1 to " + std::to_string(kMostPixels) + " pixels along each side",
+                         "image size", "give such a size");
     if (!(stepInD0 > 0 && stepInD0 <= 16))
         throw UsageError("the step must lie in (0, 16] reference lengths", "step", "give such a step");
     if (finestInD0 && !(*finestInD0 >= kFinestStep && *finestInD0 <= 16))

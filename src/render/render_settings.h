@@ -50,8 +50,10 @@ struct Light {
 template <>
 std::span<const Setting> settingsOf<Light>();
 
+inline constexpr int kMostPixels = 16384; ///< along a side of a picture
+
 struct RenderSettings {
-    int width = 512, height = 512;                ///< pixels, each in [1, 16384]
+    int width = 512, height = 512;                ///< pixels, each in [1, kMostPixels]
     std::optional<Rgb> background = Rgb{0, 0, 0}; ///< empty: transparent
     std::optional<Rgb> backgroundTop; ///< at the top of the picture, `background` at its bottom; empty: plain
     double stepInD0 = 0.5;            ///< largest distance of samples along a ray, in d0, (0, 16]

@@ -6,9 +6,11 @@
 #include <random>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "optimize/solve/block_tridiagonal.h"
 #include "optimize/solve/boxed_step.h"
+#include "optimize/solve/flattest_direction.h"
 #include "optimize/solve/least_variance.h"
 #include "optimize/solve/log_depths.h"
 
@@ -317,6 +319,26 @@ TEST_CASE("a search begins inside its limits, with what is wanted above 0 and th
     for (const double a : {1e-6, 0.01, 0.5, 0.999}) CHECK(opacityOfLogDepth(logDepthOf(a)) == Approx(a).epsilon(1e-9));
     CHECK(logDepthOf(0) == logDepthOf(kLeastOpacity));
     CHECK(logDepthOf(1) == logDepthOf(kMostOpacity));
+}
+
+TEST_CASE("the flattest direction is the singular vector of the least singular value", "[solve]") {
+    for (const Eigen::Index n : {1, 2, 5, 16, 64}) {
+        CAPTURE(n);
+        // J = U S Vᵀ with singular values 1e-3, 2, …, 2: the first column of V, which is (1, 2, …, n) but for its
+        // length.
+        Matrix start = Matrix::Random(n, n);
+        start.col(0) = Vector::LinSpaced(n, 1, static_cast<double>(n));
+        const Matrix v = Eigen::HouseholderQR<Matrix>(start).householderQ();
+        const Matrix u = Eigen::HouseholderQR<Matrix>(Matrix::Random(n + 1, n + 1)).householderQ();
+        Vector values = Vector::Constant(n, 2);
+        values[0] = 1e-3;
+        const Vector d = flattestDirection(u.leftCols(n) * values.asDiagonal() * v.transpose());
+        CHECK(d.lpNorm<Eigen::Infinity>() == Approx(1));
+        CHECK(std::abs(d.normalized().dot(v.col(0))) == Approx(1).margin(1e-9));
+    }
+    // Nothing is flatter than anything else: equal parts.
+    CHECK(flattestDirection(Matrix::Zero(3, 4)).isApprox(Vector::Ones(4)));
+    CHECK(flattestDirection(Matrix::Identity(4, 4)).isApprox(Vector::Ones(4)));
 }
 
 TEST_CASE("blocks that are coupled with their neighbours are solved as the whole matrix is", "[solve]") {

@@ -10,6 +10,7 @@
 #include <QSpinBox>
 
 #include "dialogs/closing_buttons.h"
+#include "render/render_settings.h"
 #include "widgets/layouts.h"
 #include "widgets/named.h"
 
@@ -28,7 +29,7 @@ SaveImageDialog::SaveImageDialog(const QString& path, const QSize& seen, bool an
     m_annotated->setEnabled(annotated);
     m_annotated->setChecked(annotated);
     for (QSpinBox* box : {m_width, m_height}) {
-        box->setRange(1, 16384);
+        box->setRange(1, kMostPixels);
         box->setSuffix(tr(" px"));
     }
     const std::pair<QString, QSize> presets[] = {

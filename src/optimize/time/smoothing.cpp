@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "base/error.h"
 #include "optimize/solve/block_tridiagonal.h"
+#include "optimize/solve/flattest_direction.h"
 #include "optimize/solve/log_depths.h"
 
 namespace pellucid {
@@ -110,15 +109,7 @@ private:
     /// The direction in the first frame along which its shares stay, as what it does to the picture.
     void findDensity() {
         const Frame& first = m_frames.front();
-        Matrix normal = first.slope.transpose() * first.slope;
-        normal.diagonal().array() += 1e-9 * normal.trace() + 1e-300;
-        const Eigen::LDLT<Matrix> factor(normal);
-        Vector along = Vector::Ones(m_features);
-        for (int round = 0; round < 8; ++round) { // inverse iteration
-            along = factor.solve(along).eval();
-            along /= along.lpNorm<Eigen::Infinity>();
-        }
-        m_density = first.metric * along;
+        m_density = first.metric * flattestDirection(first.slope);
         m_density /= std::sqrt(std::max(m_density.dot(along), 1e-300));
     }
 
