@@ -109,7 +109,8 @@ private:
     /// The direction in the first frame along which its shares stay, as what it does to the picture.
     void findDensity() {
         const Frame& first = m_frames.front();
-        m_density = first.metric * flattestDirection(first.slope);
+        const Vector along = flattestDirection(first.slope);
+        m_density = first.metric * along;
         m_density /= std::sqrt(std::max(m_density.dot(along), 1e-300));
     }
 
