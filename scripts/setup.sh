@@ -14,7 +14,7 @@ packages=(
     # the window
     qt6-base-dev libqt6opengl6-dev libqt6openglwidgets6
     # the tests: Catch2, a display without a screen, a font for its windows, scripts
-    catch2 xvfb xauth fonts-dejavu-core python3
+    catch2 xvfb xauth fonts-dejavu-core python3 python3-numpy
     "$@"
 )
 

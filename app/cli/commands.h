@@ -30,6 +30,7 @@ Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
 Command addSequence(CLI::App& program);
 Command addSpace(CLI::App& program);
+Command addSaliencyMap(CLI::App& program);
 Command addProbe(CLI::App& program);
 Command addViews(CLI::App& program);
 Command addBench(CLI::App& program);

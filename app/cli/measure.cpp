@@ -1,6 +1,10 @@
 // `measure`: what each feature shows from one view.
+#include <algorithm>
+
 #include "commands.h"
+#include "engines/engines.h"
 #include "prepare.h"
+#include "render/feature_pictures.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 
@@ -11,11 +15,33 @@ namespace {
 struct Options {
     SceneOptions scene;
     bool jacobian = false, occlusion = false;
+    bool pictured = false;               ///< --2dfs
+    std::optional<ImageSize> size;       ///< of the picture
+    std::vector<CLI::Option*> ofPicture; ///< options that say nothing without --2dfs
+
+    void check() const {
+        if (pictured) return;
+        const auto given =
+            std::ranges::find_if(ofPicture, [](const CLI::Option* option) { return option->count() > 0; });
+        const std::string name = given != ofPicture.end() ? (*given)->get_name() : size ? "--size" : "";
+        if (!name.empty())
+            throw UsageError("a picture is looked at with --2dfs alone", name, "add --2dfs, or leave it out");
+    }
 };
 
 struct Seconds {
     double visibility = 0, saliency = 0, total = 0;
     std::optional<double> jacobian;
+    std::optional<double> pictures; ///< to draw them
+    std::optional<double> fs;       ///< to look at them
+};
+
+/// 2D feature saliency.
+struct Pictured {
+    std::vector<double> shares; ///< FS by feature
+    int width = 0, height = 0;
+    bool lit = false;
+    std::string renderer;
 };
 
 using Matrix = std::vector<std::vector<double>>;
@@ -39,29 +65,54 @@ std::string textOf(const TransferFunction& tf, const std::optional<Matrix>& matr
     return table.text();
 }
 
-std::string textOf(const Scene& scene, const Measures& m, const Matrices& matrices, const std::string& engine,
-                   const Seconds& seconds) {
-    const TransferFunction& tf = scene.tf;
-    const std::vector<std::string> names = namesWithEmpty(tf, *scene.histogram);
-    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation", "cover"});
-    for (std::size_t i = 0; i < tf.features.size(); ++i) {
-        const FeatureMeasures& f = m.features[i];
-        table.add({names[i], fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
-                   fixedText(m.opacities[i], 4), fixedText(f.visibility, 4), fixedText(f.vws, 4),
-                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4), fixedText(m.coverage->covers[i], 4)});
-    }
-    const std::string features = tf.features.empty()
-                                     ? "the transfer function has no features\n"
-                                     : table.text() + "coverage " + fixedText(m.coverage->coverage, 4) + "\n";
-    return features + textOf(tf, matrices.jacobian, "dVWS / dopacity of") +
-           textOf(tf, matrices.occlusion, "part hidden by") + "engine " + engine + ": visibility " +
-           secondsText(seconds.visibility) + ", saliency " + secondsText(seconds.saliency) +
-           (seconds.jacobian ? ", jacobian " + secondsText(*seconds.jacobian) : "") + ", total " +
-           secondsText(seconds.total) + "\n";
+/// All that `measure` answers.
+struct Found {
+    Measures measures;
+    Matrices matrices;
+    std::optional<Pictured> pictured;
+    std::string engine;
+    Seconds seconds;
+};
+
+std::string sizeText(const Pictured& p) {
+    return "2DFS of " + std::to_string(p.width) + " x " + std::to_string(p.height) + " pixels, " +
+           (p.lit ? "lit" : "not lit") + ", drawn by " + p.renderer + "\n";
 }
 
-Json jsonOf(const Scene& scene, const Measures& m, const Matrices& matrices, const std::string& engine,
-            const Seconds& seconds) {
+std::string textOf(const Scene& scene, const Found& found, const std::string& profile) {
+    const auto& [m, matrices, pictured, engine, seconds] = found;
+    const TransferFunction& tf = scene.tf;
+    const std::vector<std::string> names = namesWithEmpty(tf, *scene.histogram);
+    std::vector<std::string> head{"feature", "intensities", "opacity",    "visibility",
+                                  "VWS",     "brightness",  "saturation", "cover"};
+    if (pictured) head.emplace_back("2DFS");
+    Table table(head);
+    for (std::size_t i = 0; i < tf.features.size(); ++i) {
+        const FeatureMeasures& f = m.features[i];
+        std::vector<std::string> row{names[i],
+                                     fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
+                                     fixedText(m.opacities[i], 4),
+                                     fixedText(f.visibility, 4),
+                                     fixedText(f.vws, 4),
+                                     fixedText(f.vwsBrightness, 4),
+                                     fixedText(f.vwsSaturation, 4),
+                                     fixedText(m.coverage->covers[i], 4)};
+        if (pictured) row.push_back(fixedText(pictured->shares[i], 4));
+        table.add(row);
+    }
+    const std::string features = tf.features.empty() ? "the transfer function has no features\n"
+                                                     : table.text() + "coverage " + fixedText(m.coverage->coverage, 4) +
+                                                           "\n" + (pictured ? sizeText(*pictured) : "");
+    return features + textOf(tf, matrices.jacobian, "dVWS / dopacity of") +
+           textOf(tf, matrices.occlusion, "part hidden by") + "engine " + engine + profile + ": visibility " +
+           secondsText(seconds.visibility) + ", saliency " + secondsText(seconds.saliency) +
+           (seconds.jacobian ? ", jacobian " + secondsText(*seconds.jacobian) : "") +
+           (seconds.fs ? ", pictures " + secondsText(*seconds.pictures) + ", 2DFS " + secondsText(*seconds.fs) : "") +
+           ", total " + secondsText(seconds.total) + "\n";
+}
+
+Json jsonOf(const Scene& scene, const Found& found) {
+    const auto& [m, matrices, pictured, engine, seconds] = found;
     const TransferFunction& tf = scene.tf;
     Json features = Json::array();
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
@@ -75,6 +126,7 @@ Json jsonOf(const Scene& scene, const Measures& m, const Matrices& matrices, con
                             {"vws_brightness", f.vwsBrightness},
                             {"vws_saturation", f.vwsSaturation},
                             {"cover", m.coverage->covers[i]}});
+        if (pictured) features.back()["fs"] = pictured->shares[i];
     }
     Json json{{"command", "measure"},
               {"engine", engine},
@@ -84,36 +136,61 @@ Json jsonOf(const Scene& scene, const Measures& m, const Matrices& matrices, con
               {"visibility_histogram", m.visibilityHistogram}};
     if (matrices.jacobian) json["jacobian"] = *matrices.jacobian;
     if (matrices.occlusion) json["occlusion"] = *matrices.occlusion;
+    if (pictured)
+        json["picture"] = {
+            {"size", {pictured->width, pictured->height}}, {"lit", pictured->lit}, {"engine", pictured->renderer}};
     Json& times = json["seconds"] = {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}};
     if (seconds.jacobian) times["jacobian"] = *seconds.jacobian;
+    if (seconds.fs) {
+        times["pictures"] = *seconds.pictures;
+        times["fs"] = *seconds.fs;
+    }
     times["total"] = seconds.total;
     return json;
 }
 
+Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& progress) {
+    PictureOptions options = o.scene.picture;
+    options.size = o.size.value_or(ImageSize{});
+    const PictureInput picture = options.pictureOf(scene);
+    const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
+    const Stopwatch drawing;
+    const FeaturePictures pictures =
+        featurePictures(*renderer, picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
+    seconds.pictures = drawing.seconds();
+    const Stopwatch looking;
+    Pictured pictured{featureSaliency(pictures, progress.phase("2D saliency")).shares, picture.settings.width,
+                      picture.settings.height, picture.settings.light.on, renderer->name()};
+    seconds.fs = looking.seconds();
+    return pictured;
+}
+
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
+    o.check();
     const Opened opened = resolve(o.scene, progress, {toMeasure("measuring"), true});
     const MeasureInput input = measureInput(opened.scene);
     Workspace workspace;
-    const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
+    Found found;
+    Seconds& seconds = found.seconds;
+    const Prepared prepared = prepare(workspace, input, progress);
+    found.engine = prepared.engine;
+    seconds.saliency = prepared.saliencySeconds;
 
-    Seconds seconds;
-    seconds.saliency = saliencySeconds;
-    Measures m = workspace.measure(input, progress.phase("visibility"));
+    found.measures = workspace.measure(input, progress.phase("visibility"));
     seconds.visibility = workspace.seconds().visibility;
-    m.coverage = workspace.coverage(input, progress.phase("coverage"));
-    Matrices matrices;
+    found.measures.coverage = workspace.coverage(input, progress.phase("coverage"));
     if (o.jacobian) {
-        matrices.jacobian = workspace.jacobian(input, progress.phase("derivatives"));
+        found.matrices.jacobian = workspace.jacobian(input, progress.phase("derivatives"));
         seconds.jacobian = workspace.seconds().visibility;
     }
-    if (o.occlusion) matrices.occlusion = workspace.occlusion(input, progress.phase("occlusion"));
+    if (o.occlusion) found.matrices.occlusion = workspace.occlusion(input, progress.phase("occlusion"));
+    if (o.pictured) found.pictured = look(o, opened.scene, seconds, progress);
     seconds.total = total.seconds();
-    Json json = jsonOf(opened.scene, m, matrices, engine, seconds);
+    Json json = jsonOf(opened.scene, found);
     addProfile(json, input.settings);
     addMapping(json, opened.scene);
-    return {textOf(opened.scene, m, matrices, engine + profileText(input.settings), seconds), std::move(json),
-            opened.notices()};
+    return {textOf(opened.scene, found, profileText(input.settings)), std::move(json), opened.notices()};
 }
 
 } // namespace
@@ -121,11 +198,23 @@ Answer run(const Options& o, Progress& progress) {
 Command addMeasure(CLI::App& program) {
     CLI::App* app = program.add_subcommand("measure", "Visibility and visibility-weighted saliency of each feature");
     const auto o = std::make_shared<Options>();
-    o->scene.addForFigures(*app);
+    o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
     app->add_flag("--jacobian", o->jacobian,
                   "also print the derivatives of each VWS with respect to each feature's opacity");
     app->add_flag("--occlusion", o->occlusion,
                   "also print how much of each feature's visibility every other feature takes away");
+    app->add_flag(
+        "--2dfs", o->pictured,
+        "also print each feature's 2D feature saliency: its share of what catches the eye in the picture that "
+        "render draws with the same options");
+    o->scene.volume.addSizeOfBoth(
+        *app, [o](const ImageSize& size) { o->size = size; },
+        "WxH: pixels of the picture that --2dfs looks at (default 512x512); N: as --sample-size");
+    const std::vector<CLI::Option*> others = app->get_options();
+    o->scene.picture.addLook(*app);
+    o->scene.ground.add(*app);
+    for (CLI::Option* option : app->get_options())
+        if (std::ranges::find(others, option) == others.end()) o->ofPicture.push_back(option);
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

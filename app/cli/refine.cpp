@@ -243,14 +243,8 @@ void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {
         },
         "four numbers: prioritize what has the colours of these pixels of the picture, y down, the last ones not "
         "included; three intervals: only these voxels of the data");
-    addValue(
-        app, "--size", "WxH|N",
-        [o](const std::string& text, const std::string& option) {
-            if (text.find('x') != std::string::npos)
-                o->size = parseImageSize(text, option);
-            else
-                o->scene.volume.sampleSize = parseSampleSize(text, option);
-        },
+    o->scene.volume.addSizeOfBoth(
+        app, [o](const ImageSize& size) { o->size = size; },
         "WxH: pixels of the picture that --region is of (default 512x512); N: as --sample-size");
 }
 

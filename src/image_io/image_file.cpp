@@ -26,27 +26,34 @@ OIIO::TypeDesc sampleFormat(const std::string& suffix) {
     return OIIO::TypeDesc::UINT8;
 }
 
-/// The bytes of the file. In memory, since the libraries behind OpenImageIO overlook a full disk or end the process.
-std::vector<unsigned char> encoded(const Image& image, const std::string& suffix, const std::string& path) {
+/// The bytes of a file of these floats. In memory, since the libraries behind OpenImageIO overlook a full disk or end
+/// the process.
+std::vector<unsigned char> encoded(OIIO::ImageSpec spec, const float* values, std::size_t channels,
+                                   const std::string& suffix, const std::string& path) {
     const auto out = OIIO::ImageOutput::create("image" + suffix);
     if (!out || !out->supports("ioproxy"))
         throw FileError("no writer for this kind of image", path, "choose another suffix");
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    void* proxy = &memory;
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const auto stride = static_cast<OIIO::stride_t>(channels * sizeof(float));
+    const bool good =
+        out->open("image" + suffix, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values, stride) && out->close();
+    const std::string error = out->geterror(); // some come without a failure
+    if (!good || !error.empty())
+        throw FileError("cannot encode the image (" + error + ")", path, "choose another suffix");
+    return bytes;
+}
+
+std::vector<unsigned char> encoded(const Image& image, const std::string& suffix, const std::string& path) {
     const int channels = suffix == ".jpg" || suffix == ".jpeg" ? 3 : 4;
     OIIO::ImageSpec spec(image.width, image.height, channels, sampleFormat(suffix));
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("oiio:UnassociatedAlpha", 1); // Image holds straight colours
     // OpenImageIO 2.4 spoils a TIFF in memory by a directory for Exif tags, which would only say sRGB.
     spec.attribute("tiff:write_exif", 0);
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    void* proxy = &memory;
-    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    const bool good = out->open("image" + suffix, spec) &&
-                      out->write_image(OIIO::TypeDesc::FLOAT, image.rgba.data(), 4 * sizeof(float)) && out->close();
-    const std::string error = out->geterror(); // some come without a failure
-    if (!good || !error.empty())
-        throw FileError("cannot encode the image (" + error + ")", path, "choose another suffix");
-    return bytes;
+    return encoded(std::move(spec), image.rgba.data(), 4, suffix, path);
 }
 
 } // namespace
@@ -64,6 +71,21 @@ void writeImage(const Image& image, const std::string& path) {
 }
 
 std::vector<unsigned char> pngOf(const Image& image) { return encoded(image, ".png", "a picture in memory"); }
+
+void checkPlaneSuffix(const std::string& path) {
+    const std::string suffix = suffixOf(path);
+    if (suffix != ".png" && suffix != ".exr")
+        throw UsageError("a map is written as .exr or .png", path, "give one of these suffixes");
+}
+
+void writePlane(const Plane& plane, const std::string& path) {
+    checkPlaneSuffix(path);
+    const std::string suffix = suffixOf(path);
+    OIIO::ImageSpec spec(plane.width, plane.height, 1,
+                         suffix == ".exr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT16);
+    spec.attribute("oiio:ColorSpace", "Linear"); // numbers, not colours
+    writeBytesAtomically(path, encoded(std::move(spec), plane.values.data(), 1, suffix, path));
+}
 
 Image readImage(const std::string& path) {
     OIIO::ImageSpec config;

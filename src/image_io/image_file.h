@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "render/image.h"
+#include "base/image.h"
+#include "saliency/image_saliency.h"
 
 namespace pellucid {
 
@@ -13,7 +14,12 @@ namespace pellucid {
 void writeImage(const Image& image, const std::string& path);
 /// The bytes of a PNG file, 8 bit, with alpha. Throws FileError.
 std::vector<unsigned char> pngOf(const Image& image);
+/// A picture of any kind that OpenImageIO reads; alpha 1 where it has none. Throws FileError.
 Image readImage(const std::string& path);
+/// One channel: .exr with 32-bit floats as they are, .png with 16 bits of value · 65535. Throws FileError.
+void writePlane(const Plane& plane, const std::string& path);
+/// Throws UsageError where the suffix is neither, before any work is done.
+void checkPlaneSuffix(const std::string& path);
 /// Throws UsageError where the suffix is none of these, before any work is done.
 void checkImageSuffix(const std::string& path);
 

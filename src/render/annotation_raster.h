@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "base/image.h"
 #include "render/annotation.h"
-#include "render/image.h"
 
 namespace pellucid {
 

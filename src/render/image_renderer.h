@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "base/image.h"
 #include "base/job.h"
-#include "render/image.h"
 #include "render/render_settings.h"
 #include "tf/transfer_function.h"
 

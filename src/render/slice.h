@@ -7,8 +7,8 @@
 
 #include <glm/vec2.hpp>
 
+#include "base/image.h"
 #include "render/clipping.h"
-#include "render/image.h"
 #include "tf/transfer_function.h"
 #include "volume/voxel_colors.h"
 

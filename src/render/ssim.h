@@ -1,7 +1,7 @@
 // How alike two pictures are to the eye.
 #pragma once
 
-#include "render/image.h"
+#include "base/image.h"
 
 namespace pellucid {
 

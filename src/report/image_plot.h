@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "render/image.h"
+#include "base/image.h"
 #include "report/plot_drawing.h"
 
 namespace pellucid {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "base/image.h"
 #include "optimize/optimizer.h"
 #include "optimize/space/parameter_space.h"
 #include "render/annotation.h"
-#include "render/image.h"
 #include "session/session.h"
 
 namespace pellucid {

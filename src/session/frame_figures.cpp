@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engines/engines.h"
-#include "render/color_difference.h"
+#include "tf/color_difference.h"
 
 namespace pellucid {
 

@@ -57,18 +57,31 @@ Rgb srgbFromLch(const Lch& wanted) {
     return {encoded(linear.r), encoded(linear.g), encoded(linear.b)};
 }
 
-Lch lchFromSrgb(const Rgb& srgb) {
-    const double r = linearFromSrgb(srgb.r), g = linearFromSrgb(srgb.g), b = linearFromSrgb(srgb.b);
+Lab labFromLinear(const Rgb& linear) {
+    const auto [r, g, b] = linear;
     // The sRGB primaries under D65, each row divided by its own sum, which is the white point's X, Y or Z: so white
     // gives L* = 100 and C* = 0 exactly.
     const double fx = labCurve((0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / (0.4124564 + 0.3575761 + 0.1804375));
     const double fy = labCurve((0.2126729 * r + 0.7151522 * g + 0.0721750 * b) / (0.2126729 + 0.7151522 + 0.0721750));
     const double fz = labCurve((0.0193339 * r + 0.1191920 * g + 0.9503041 * b) / (0.0193339 + 0.1191920 + 0.9503041));
-    const double aStar = 500 * (fx - fy), bStar = 200 * (fy - fz);
+    return {116 * fy - 16, 500 * (fx - fy), 200 * (fy - fz)};
+}
+
+Lab labFromSrgb(const Rgb& srgb) {
+    return labFromLinear({linearFromSrgb(srgb.r), linearFromSrgb(srgb.g), linearFromSrgb(srgb.b)});
+}
+
+double deltaE(const Lab& p, const Lab& q) {
+    const double l = p.lightness - q.lightness, a = p.a - q.a, b = p.b - q.b;
+    return std::sqrt(l * l + a * a + b * b);
+}
+
+Lch lchFromSrgb(const Rgb& srgb) {
+    const Lab lab = labFromSrgb(srgb);
     Lch lch;
-    lch.lightness = 116 * fy - 16;
-    lch.chroma = std::hypot(aStar, bStar);
-    lch.hueDegrees = std::fmod(std::atan2(bStar, aStar) * 180 / std::numbers::pi + 360.0, 360.0);
+    lch.lightness = lab.lightness;
+    lch.chroma = std::hypot(lab.a, lab.b);
+    lch.hueDegrees = std::fmod(std::atan2(lab.b, lab.a) * 180 / std::numbers::pi + 360.0, 360.0);
     return lch;
 }
 

@@ -1,9 +1,20 @@
-// sRGB and CIELCh(ab), white point D65.
+// sRGB, CIELAB and CIELCh(ab), white point D65.
 #pragma once
 
 #include "base/color.h"
 
 namespace pellucid {
+
+struct Lab {
+    double lightness = 0; ///< L*, [0,100]
+    double a = 0, b = 0;  ///< a*, b*, within ±134 for sRGB colours
+};
+
+Lab labFromSrgb(const Rgb& srgb);
+/// Of linear light.
+Lab labFromLinear(const Rgb& linear);
+/// CIE76's ΔE, the distance of both: 0 the same, about 2.3 just noticed, 100 black to white.
+double deltaE(const Lab& p, const Lab& q);
 
 struct Lch {
     double lightness = 0;  ///< L*, [0,100]

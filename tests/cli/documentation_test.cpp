@@ -20,9 +20,9 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",    "samples", "presets", "generate", "render",
-                                         "measure", "fields",  "propose", "refine",   "optimize",
-                                         "probe",   "views",   "space",   "bench",    "sequence"};
+const std::vector<std::string> kCommands{"info",   "samples", "presets",  "generate",    "render", "measure",
+                                         "fields", "propose", "refine",   "optimize",    "probe",  "views",
+                                         "space",  "bench",   "sequence", "saliency-map"};
 
 std::string sourceFile(const std::string& path) {
     std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);
@@ -32,7 +32,7 @@ std::string sourceFile(const std::string& path) {
 }
 
 std::set<std::string> optionsIn(const std::string& text) {
-    static const std::regex kOption("--[a-z][a-z0-9-]*");
+    static const std::regex kOption("--[a-z0-9][a-z0-9-]*");
     std::set<std::string> options;
     for (std::sregex_iterator i(text.begin(), text.end(), kOption), end; i != end; ++i) options.insert(i->str());
     return options;

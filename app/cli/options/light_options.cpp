@@ -60,7 +60,9 @@ void LightOptions::add(CLI::App& app) {
         "any of " + joined(kParts, ", ", rangeOfPart), group);
     addValue(app, "--light-direction", "X,Y,Z", direction, parseDirection,
              "where the light comes from: right, up and toward the viewer (default 0,0,1, from the eye)", group);
-    given.add(app, group, {"gradient_opacity", "occlusion", "depth_cue", "silhouettes"});
+    // Of `measure` --occlusion is something else: ambient occlusion is the session's or the preset's there.
+    if (app.get_option_no_throw("--occlusion") == nullptr) given.add(app, group, {"occlusion"});
+    given.add(app, group, {"gradient_opacity", "depth_cue", "silhouettes"});
 }
 
 bool LightOptions::saysHowBright() const {

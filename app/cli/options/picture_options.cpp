@@ -4,6 +4,10 @@ namespace pellucid::cli {
 
 void PictureOptions::add(CLI::App& app, Mode modeIs) {
     addValue(app, "--size", "WxH", size, parseImageSize, "pixels (default 512x512)");
+    addLook(app, modeIs);
+}
+
+void PictureOptions::addLook(CLI::App& app, Mode modeIs) {
     addValue(
         app, "--background", "COLOR|TOP/BOTTOM|transparent",
         [this](const std::string& text, const std::string& option) {

@@ -25,6 +25,8 @@ struct PictureOptions {
     /// Mode::OfSession: without --mode, which the command has for something else.
     enum class Mode { Option, OfSession };
     void add(CLI::App& app, Mode modeIs = Mode::Option);
+    /// The same without --size.
+    void addLook(CLI::App& app, Mode modeIs = Mode::Option);
     /// Throws UsageError for options of the light that do not go together.
     void applyTo(SceneInputs& inputs) const;
     /// What needs the transfer function. Throws UsageError where no feature has the name.

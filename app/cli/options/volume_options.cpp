@@ -88,6 +88,19 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
                  "only these voxels of the data, from the first to the one before the second", kGroup);
 }
 
+void VolumeOptions::addSizeOfBoth(CLI::App& app, std::function<void(const ImageSize&)> setImage,
+                                  const std::string& help) {
+    addValue(
+        app, "--size", "WxH|N",
+        [this, setImage = std::move(setImage)](const std::string& text, const std::string& option) {
+            if (text.find('x') != std::string::npos)
+                setImage(parseImageSize(text, option));
+            else
+                sampleSize = parseSampleSize(text, option);
+        },
+        help);
+}
+
 VoxelRegion parseVoxelRegion(const std::string& text, const std::string& option) {
     constexpr std::int64_t kMost = std::numeric_limits<int>::max();
     VoxelRegion region;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -37,6 +38,8 @@ struct VolumeOptions {
     /// --size is a second name of --sample-size, except in commands whose --size is an image's. A command that looks at
     /// an image only sometimes has both: it takes --size and --region itself, and sets here what is meant for a volume.
     enum class SizeIs { Sample, Image, Both };
+    /// Adds a --size of a command whose --size is a sample's, and of an image that it looks at besides.
+    void addSizeOfBoth(CLI::App& app, std::function<void(const ImageSize&)> setImage, const std::string& help);
     void add(CLI::App& app, SizeIs size = SizeIs::Sample);
     /// Whether any of them but VOLUME is given.
     bool anyDetail() const;

@@ -3,7 +3,7 @@
 
 #include <QImage>
 
-#include "render/image.h"
+#include "base/image.h"
 
 namespace pellucid::gui {
 

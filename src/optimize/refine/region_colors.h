@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "base/image.h"
 #include "optimize/refine/refine.h"
-#include "render/image.h"
 #include "render/image_region.h"
 
 namespace pellucid {

@@ -4,7 +4,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/color_difference.h"
+#include "tf/color_difference.h"
 
 using namespace pellucid;
 

@@ -1,4 +1,4 @@
-#include "render/color_difference.h"
+#include "tf/color_difference.h"
 
 #include <algorithm>
 #include <array>
@@ -12,22 +12,6 @@
 namespace pellucid {
 
 namespace {
-
-using Lab = std::array<double, 3>;
-
-Lab labOfLinear(double r, double g, double b) {
-    const double x = (0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / (0.4124564 + 0.3575761 + 0.1804375);
-    const double y = (0.2126729 * r + 0.7151522 * g + 0.0721750 * b) / (0.2126729 + 0.7151522 + 0.0721750);
-    const double z = (0.0193339 * r + 0.1191920 * g + 0.9503041 * b) / (0.0193339 + 0.1191920 + 0.9503041);
-    const double fx = labCurve(x), fy = labCurve(y), fz = labCurve(z);
-    return {116 * fy - 16, 500 * (fx - fy), 200 * (fy - fz)};
-}
-
-double distance(const Lab& p, const Lab& q) {
-    double square = 0;
-    for (std::size_t c = 0; c < 3; ++c) square += (p[c] - q[c]) * (p[c] - q[c]);
-    return std::sqrt(square);
-}
 
 /// Linear light of the 256 values that a screen has.
 const std::array<double, 256>& screenLight() {
@@ -61,8 +45,8 @@ double meanDeltaE(const Image& a, const Image& b) {
         for (int x = 0; x < a.width; ++x) {
             const auto p = shown(a.pixel(x, y)), q = shown(b.pixel(x, y));
             if (p == q) continue;
-            rows[row] += distance(labOfLinear(light[p[0]], light[p[1]], light[p[2]]),
-                                  labOfLinear(light[q[0]], light[q[1]], light[q[2]]));
+            rows[row] += deltaE(labFromLinear({light[p[0]], light[p[1]], light[p[2]]}),
+                                labFromLinear({light[q[0]], light[q[1]], light[q[2]]}));
         }
     });
     double sum = 0;
@@ -79,8 +63,10 @@ std::vector<double> labPixels(const Image& image) {
             const auto light = [&](int c) {
                 return linearFromSrgb(static_cast<double>(p[c]) * static_cast<double>(p[3]));
             };
-            const Lab lab = labOfLinear(light(0), light(1), light(2));
-            std::copy(lab.begin(), lab.end(), &out[3 * pixel]);
+            const auto [l, a, b] = labFromLinear({light(0), light(1), light(2)});
+            out[3 * pixel] = l;
+            out[3 * pixel + 1] = a;
+            out[3 * pixel + 2] = b;
         }
     });
     return out;

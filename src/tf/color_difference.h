@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/image.h"
+#include "base/image.h"
 
 namespace pellucid {
 
