@@ -28,27 +28,6 @@ struct Options {
 constexpr std::array kUsual{FieldKind::Visibility, FieldKind::SaliencyBrightness, FieldKind::SaliencySaturation,
                             FieldKind::Vws};
 
-/// A folder that goes again where nothing could be written into it.
-class OutputFolder {
-public:
-    explicit OutputFolder(const std::string& path) : m_path(path) {
-        std::error_code ec;
-        m_isNew = fs::create_directory(path, ec);
-        if (ec && !fs::is_directory(path))
-            throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
-    }
-    ~OutputFolder() {
-        std::error_code ec;
-        if (m_isNew) fs::remove(m_path, ec); // an empty one only
-    }
-    OutputFolder(const OutputFolder&) = delete;
-    OutputFolder& operator=(const OutputFolder&) = delete;
-
-private:
-    fs::path m_path;
-    bool m_isNew = false;
-};
-
 /// One file: all of a field, or what it is in one feature.
 struct Output {
     FieldKind kind;

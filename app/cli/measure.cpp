@@ -1,8 +1,11 @@
 // `measure`: what each feature shows from one view.
 #include <algorithm>
+#include <filesystem>
 
 #include "commands.h"
 #include "engines/engines.h"
+#include "image_io/image_file.h"
+#include "output_files.h"
 #include "prepare.h"
 #include "render/feature_pictures.h"
 #include "render/memory_needs.h"
@@ -17,13 +20,17 @@ struct Options {
     bool jacobian = false, occlusion = false;
     bool pictured = false;               ///< --2dfs
     std::optional<ImageSize> size;       ///< of the picture
+    std::optional<std::string> maps;     ///< folder of pictures and maps
     std::vector<CLI::Option*> ofPicture; ///< options that say nothing without --2dfs
 
     void check() const {
         if (pictured) return;
         const auto given =
             std::ranges::find_if(ofPicture, [](const CLI::Option* option) { return option->count() > 0; });
-        const std::string name = given != ofPicture.end() ? (*given)->get_name() : size ? "--size" : "";
+        const std::string name = given != ofPicture.end() ? (*given)->get_name()
+                                 : size                   ? "--size"
+                                 : maps                   ? "--maps"
+                                                          : "";
         if (!name.empty())
             throw UsageError("a picture is looked at with --2dfs alone", name, "add --2dfs, or leave it out");
     }
@@ -42,6 +49,7 @@ struct Pictured {
     int width = 0, height = 0;
     bool lit = false;
     std::string renderer;
+    std::vector<std::string> files;
 };
 
 using Matrix = std::vector<std::vector<double>>;
@@ -75,8 +83,10 @@ struct Found {
 };
 
 std::string sizeText(const Pictured& p) {
+    std::string files;
+    for (const std::string& file : p.files) files += "wrote " + file + "\n";
     return "2DFS of " + std::to_string(p.width) + " x " + std::to_string(p.height) + " pixels, " +
-           (p.lit ? "lit" : "not lit") + ", drawn by " + p.renderer + "\n";
+           (p.lit ? "lit" : "not lit") + ", drawn by " + p.renderer + "\n" + files;
 }
 
 std::string textOf(const Scene& scene, const Found& found, const std::string& profile) {
@@ -136,9 +146,13 @@ Json jsonOf(const Scene& scene, const Found& found) {
               {"visibility_histogram", m.visibilityHistogram}};
     if (matrices.jacobian) json["jacobian"] = *matrices.jacobian;
     if (matrices.occlusion) json["occlusion"] = *matrices.occlusion;
-    if (pictured)
-        json["picture"] = {
-            {"size", {pictured->width, pictured->height}}, {"lit", pictured->lit}, {"engine", pictured->renderer}};
+    if (pictured) {
+        Json& picture = json["picture"];
+        picture["size"] = {pictured->width, pictured->height};
+        picture["lit"] = pictured->lit;
+        picture["engine"] = pictured->renderer;
+        if (!pictured->files.empty()) picture["files"] = pictured->files;
+    }
     Json& times = json["seconds"] = {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}};
     if (seconds.jacobian) times["jacobian"] = *seconds.jacobian;
     if (seconds.fs) {
@@ -147,6 +161,48 @@ Json jsonOf(const Scene& scene, const Found& found) {
     }
     times["total"] = seconds.total;
     return json;
+}
+
+/// The files of --maps, and what writes each (figs A.1 to A.5).
+std::vector<std::pair<std::string, std::function<void(const std::string&)>>> filesOf(const FeaturePictures& pictures,
+                                                                                     const FeatureSaliency& saliency) {
+    std::vector<std::pair<std::string, std::function<void(const std::string&)>>> files;
+    const auto picture = [&](const std::string& name, const Image& image) {
+        files.emplace_back(name + ".png", [&image](const std::string& path) {
+            Image shown = image; // its colours are those over the background
+            for (std::size_t i = 3; i < shown.rgba.size(); i += 4) shown.rgba[i] = 1;
+            writeImage(shown, path);
+        });
+    };
+    const auto map = [&](const std::string& name, const Plane& plane) {
+        files.emplace_back(name + ".exr", [&plane](const std::string& path) { writePlane(plane, path); });
+    };
+    picture("picture", pictures.whole);
+    map("saliency", saliency.map);
+    map("rest", saliency.rest);
+    for (std::size_t f = 0; f < saliency.shares.size(); ++f) {
+        const std::string feature = "feature" + std::to_string(f + 1);
+        picture(feature, pictures.alone[f]);
+        map(feature + "_shared", saliency.shared[f]);
+        map(feature + "_influence", saliency.influence[f]);
+        map(feature + "_rest", saliency.spread[f]);
+        files.emplace_back(feature + "_total.exr",
+                           [&saliency, f](const std::string& path) { writePlane(totalOf(saliency, f), path); });
+    }
+    return files;
+}
+
+std::vector<std::string> writeMaps(const std::string& folder, const FeaturePictures& pictures,
+                                   const FeatureSaliency& saliency) {
+    const auto files = filesOf(pictures, saliency);
+    for (const auto& [name, write] : files) addOutputFile(folder, name, "--maps");
+    const OutputFolder made(folder);
+    std::vector<std::string> paths;
+    for (const auto& [name, write] : files) {
+        paths.push_back((std::filesystem::path(folder) / name).string());
+        write(paths.back());
+    }
+    return paths;
 }
 
 Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& progress) {
@@ -159,9 +215,11 @@ Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& 
         featurePictures(*renderer, picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
     seconds.pictures = drawing.seconds();
     const Stopwatch looking;
-    Pictured pictured{featureSaliency(pictures, progress.phase("2D saliency")).shares, picture.settings.width,
-                      picture.settings.height, picture.settings.light.on, renderer->name()};
+    const FeatureSaliency saliency = featureSaliency(pictures, progress.phase("2D saliency"));
     seconds.fs = looking.seconds();
+    Pictured pictured{saliency.shares,           picture.settings.width, picture.settings.height,
+                      picture.settings.light.on, renderer->name(),       {}};
+    if (o.maps) pictured.files = writeMaps(*o.maps, pictures, saliency);
     return pictured;
 }
 
@@ -210,6 +268,9 @@ Command addMeasure(CLI::App& program) {
     o->scene.volume.addSizeOfBoth(
         *app, [o](const ImageSize& size) { o->size = size; },
         "WxH: pixels of the picture that --2dfs looks at (default 512x512); N: as --sample-size");
+    addOutputFolder(*app, "--maps", o->maps,
+                    "folder for the pictures of --2dfs (PNG) and its maps (EXR, floats): saliency, rest and, for each "
+                    "feature, shared, influence, rest, total; made where missing");
     const std::vector<CLI::Option*> others = app->get_options();
     o->scene.picture.addLook(*app);
     o->scene.ground.add(*app);

@@ -5,6 +5,7 @@
 // besides: one that no option announced is checked then, before it is opened.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -53,6 +54,27 @@ template <class T>
 CLI::Option* addOutputFolder(CLI::App& app, const std::string& name, T& target, const std::string& help) {
     return addValue(app, name, "DIR", target, parseOutputFolder, help);
 }
+
+/// A folder that goes again where nothing could be written into it.
+class OutputFolder {
+public:
+    explicit OutputFolder(const std::string& path) : m_path(path) {
+        std::error_code ec;
+        m_isNew = std::filesystem::create_directory(path, ec);
+        if (ec && !std::filesystem::is_directory(path))
+            throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
+    }
+    ~OutputFolder() {
+        std::error_code ec;
+        if (m_isNew) std::filesystem::remove(m_path, ec); // an empty one only
+    }
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+private:
+    std::filesystem::path m_path;
+    bool m_isNew = false;
+};
 
 /// *.camera.json. Throws FileError.
 void writeCamera(const Camera& camera, const std::string& path);

@@ -391,6 +391,13 @@ void spread(const JobControl& job, FeatureSaliency& answer) {
 
 } // namespace
 
+Plane totalOf(const FeatureSaliency& saliency, std::size_t feature) {
+    Plane total = saliency.shared.at(feature);
+    const Plane& spread = saliency.spread.at(feature);
+    for (std::size_t i = 0; i < total.values.size(); ++i) total.values[i] += spread.values[i];
+    return total;
+}
+
 Plane saliencyMap(const Image& picture, const JobControl& job) {
     if (picture.rgba.empty()) return {picture.width, picture.height};
     return enlarged<float>(coarseMap(picture, job), picture.width, picture.height);

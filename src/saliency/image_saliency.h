@@ -39,6 +39,9 @@ struct FeatureSaliency {
     std::vector<Plane> spread;    ///< what each feature has of the rest
 };
 
+/// T_i: what a feature has of S, of the rest too.
+Plane totalOf(const FeatureSaliency& saliency, std::size_t feature);
+
 /// S of what is seen of a picture over black where it is transparent: after Itti, Koch and Niebur, [0,1]. A picture of
 /// one colour has 0 everywhere. The same bits for any thread count.
 Plane saliencyMap(const Image& picture, const JobControl& job = {});

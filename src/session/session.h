@@ -207,6 +207,24 @@ std::span<const Setting> settingsOf<SliceViews>();
 template <>
 inline constexpr auto kNamesOf<SliceViews::Layout> = enumNames("layout", "volume", "four", "volume-large");
 
+/// What of 2D feature saliency the window shows (docs/method.md, "2D feature saliency").
+enum class SaliencyMapShown {
+    None,
+    Picture, ///< S
+    Feature, ///< what the selected feature has of S
+    Rest     ///< what no feature is drawn at
+};
+template <>
+inline constexpr auto kNamesOf<SaliencyMapShown> = enumNames("saliency map", "none", "picture", "feature", "rest");
+struct PictureSaliencyView {
+    bool on = false;                               ///< the picture is looked at whenever it rests
+    SaliencyMapShown map = SaliencyMapShown::None; ///< laid over the picture, where it is on
+    double strength = 0.8;                         ///< opacity of the map where it is largest
+    bool operator==(const PictureSaliencyView&) const = default;
+};
+template <>
+std::span<const Setting> settingsOf<PictureSaliencyView>();
+
 /// A field in the place of the data in the picture, under colours of its own. No figure depends on it.
 struct FieldView {
     std::optional<FieldKind> kind;  ///< empty: the data
@@ -279,7 +297,8 @@ struct Session {
     Part<OptimizeOptions> optimize;
     Part<RefineSettings> refine;
     Part<SliceViews> slices;
-    Part<FieldView> field;       ///< what is drawn in the place of the data
+    Part<FieldView> field; ///< what is drawn in the place of the data
+    Part<PictureSaliencyView> pictureSaliency;
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
     std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
 

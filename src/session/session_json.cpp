@@ -640,6 +640,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"refine", fromRefine(*s.refine)},
            {"slices", fromSlices(*s.slices)},
            {"field", fromField(*s.field)},
+           {"picture_saliency", from(*s.pictureSaliency)},
            {"target_keys", fromTargetKeys(*s.targetKeys)},
            {"adapt", from(*s.adapt)},
            {"hsb", fromHsb(*s.hsb)},
@@ -676,6 +677,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
     if (j.has("field")) s.field = toField(j["field"]);
+    if (j.has("picture_saliency")) s.pictureSaliency = to<PictureSaliencyView>(j["picture_saliency"]);
     if (j.has("target_keys")) s.targetKeys = toTargetKeys(j["target_keys"]);
     if (j.has("adapt")) s.adapt = to<AdaptSettings>(j["adapt"]);
     if (j.has("hsb")) s.hsb = toHsb(j["hsb"]);
@@ -692,10 +694,10 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         }
         s.runs = std::move(runs);
     }
-    s.extraJson = j.unknownKeys({"format", "version", "variables", "frame",       "features", "hold_targets",
-                                 "camera", "clip",    "display",   "reference",   "measure",  "optimize",
-                                 "refine", "slices",  "field",     "target_keys", "adapt",    "hsb",
-                                 "ground", "runs",    "density",   "title"});
+    s.extraJson = j.unknownKeys(
+        {"format",  "version",   "variables", "frame",    "features", "hold_targets",     "camera", "clip",
+         "display", "reference", "measure",   "optimize", "refine",   "slices",           "field",  "target_keys",
+         "adapt",   "hsb",       "ground",    "runs",     "density",  "picture_saliency", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -254,6 +254,37 @@ std::span<const Setting> settingsOf<SliceViews>() {
 }
 
 template <>
+std::span<const Setting> settingsOf<PictureSaliencyView>() {
+    using P = PictureSaliencyView;
+    constexpr auto isOn = [](const void* p) { return static_cast<const P*>(p)->on; };
+    static constexpr const char* kMaps[] = {"Nothing", "The whole picture", "The selected feature",
+                                            "What no feature has"};
+    static const Setting kSettings[] = {
+        {.key = "on",
+         .at = member<&P::on>,
+         .words = "2D feature &saliency",
+         .help = "Looks at the picture whenever it rests, and says how much of what catches the eye each feature has.",
+         .option = ""},
+        {.key = "map",
+         .at = member<&P::map>,
+         .words = "Map over the &picture",
+         .help = "Lays over the picture how much each place catches the eye: in all, of the selected feature, or where "
+                 "no feature is drawn.",
+         .choices = kMaps,
+         .option = "",
+         .used = isOn},
+        {.key = "strength",
+         .at = member<&P::strength>,
+         .words = "S&trength",
+         .help = "The opacity of the map at its largest value.",
+         .range = {0, 1, Open::Low},
+         .option = "",
+         .used = isOn},
+    };
+    return kSettings;
+}
+
+template <>
 std::span<const Setting> settingsOf<FieldView>() {
     using F = FieldView;
     constexpr auto isOn = [](const void* f) { return static_cast<const F*>(f)->kind.has_value(); };

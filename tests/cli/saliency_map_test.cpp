@@ -51,6 +51,25 @@ TEST_CASE("measure tells the 2D feature saliency of the picture that render draw
         const json alone = w.json(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72", "--feature", "f2"});
         CHECK(sharesIn(alone) == std::vector<double>{0, 1, 0});
     }
+    SECTION("pictures and maps are written, and add up") {
+        const json written = w.json(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72", "--maps", "m"});
+        CHECK(written["picture"]["files"].size() == 3 + 3 * 5);
+        const auto sum = [&](const std::string& name) {
+            const Image image = readImage(w.path("m/" + name + ".exr").string());
+            REQUIRE(image.width == 96);
+            double total = 0;
+            for (std::size_t i = 0; i < image.rgba.size(); i += 4) total += static_cast<double>(image.rgba[i]);
+            return total;
+        };
+        const double all = sum("feature1_total") + sum("feature2_total") + sum("feature3_total");
+        CHECK(sum("feature2_total") / all == Approx(shares[1]).margin(1e-5));
+        CHECK(sum("feature2_total") == Approx(sum("feature2_shared") + sum("feature2_rest")).margin(1e-3));
+        CHECK(sum("saliency") ==
+              Approx(sum("rest") + sum("feature1_shared") + sum("feature2_shared") + sum("feature3_shared"))
+                  .margin(1e-3));
+        CHECK(readImage(w.path("m/feature3.png").string()).height == 72);
+        CHECK(w.run(Words{"measure"} + kShells + Words{"--maps", "n"}).status == 2);
+    }
     SECTION("the table has a column and says what picture it is of") {
         const Outcome text = w.run(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72", "--shading"});
         CHECK(text.out.find("2DFS\n") != std::string::npos);

@@ -145,5 +145,6 @@ TEST_CASE("every setting goes through every door, and each refuses in the same w
     walk<FieldView>();
     walk<GroundView>();
     walk<SliceViews>();
+    walk<PictureSaliencyView>();
     walk<HsbMapping>();
 }

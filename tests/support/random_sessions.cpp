@@ -355,6 +355,9 @@ Session randomSession(std::uint32_t number) {
     if (random.chance(0.7)) s.refine = randomRefine(random);
     if (random.chance(0.7)) s.slices = randomSlices(random);
     s.field = randomField(random);
+    if (random.chance(0.7))
+        s.pictureSaliency = PictureSaliencyView{random.chance(0.5), static_cast<SaliencyMapShown>(random.below(4)),
+                                                0.05 * (1 + random.below(20))};
     for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
     addSeriesParts(s, random);
     s.extraJson = randomExtra(random);

@@ -39,6 +39,7 @@ Controllers::Controllers(Services& all) : services(all) {
     addViewActions(services);
     addAnnotationActions(services);
     fields.addActions();
+    pictureSaliency.addActions();
     addSliceActions(services);
     player.addActions();
     adapting.addActions();
@@ -67,6 +68,7 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(starting, &StartController::busyChanged);
     watch(saving, &SaveController::busyChanged);
     watch(fields, &FieldController::busyChanged);
+    watch(pictureSaliency, &PictureSaliencyController::busyChanged);
     watch(player, &PlayerController::changed);
     watch(adapting, &AdaptController::changed);
 }

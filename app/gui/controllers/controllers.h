@@ -7,6 +7,7 @@
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
+#include "controllers/picture_saliency_controller.h"
 #include "controllers/player_controller.h"
 #include "controllers/probe_controller.h"
 #include "controllers/recovery_controller.h"
@@ -35,6 +36,7 @@ struct Controllers {
     PlayerController player{services, opening}; ///< frames of a series
     AdaptController adapting{services, player}; ///< transfer functions over time
     ViewSearchController views{services, optimizing};
+    PictureSaliencyController pictureSaliency{services};
     ProbeController probe{services};
     TargetActions targets{services};
     FeatureActions features{services, targets};

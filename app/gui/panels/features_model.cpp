@@ -1,5 +1,6 @@
 #include "panels/features_model.h"
 
+#include "controllers/picture_saliency_controller.h"
 #include "store/edits.h"
 #include "tf/edit.h"
 #include "tf/shapes.h"
@@ -20,7 +21,10 @@ const std::array<std::pair<const char*, const char*>, FeaturesModel::ColumnCount
     {QT_TR_NOOP("Visibility"), QT_TR_NOOP("The feature's share of the picture, 0 to 1, from this camera")},
     {QT_TR_NOOP("VWS"),
      QT_TR_NOOP("Visibility-weighted saliency: the feature's share of what catches the eye, 0 to 1")},
-    {QT_TR_NOOP("Target"), QT_TR_NOOP("The share of saliency that Optimize aims at; all targets add up to 1")}};
+    {QT_TR_NOOP("Target"), QT_TR_NOOP("The share of saliency that Optimize aims at; all targets add up to 1")},
+    {QT_TR_NOOP("2DFS"),
+     QT_TR_NOOP(
+         "2D feature saliency: the feature's share of what catches the eye in the picture that is shown, 0 to 1")}};
 
 bool isLimited(const OpacityLimits& limits) { return limits.lowest > 0 || limits.highest < 1; }
 
@@ -31,6 +35,11 @@ FeaturesModel::FeaturesModel(SessionStore& store, Results& results, QObject* par
     connect(&store, &SessionStore::changed, this, &FeaturesModel::follow);
     connect(&results, &Results::changed, this, [this] { refresh(Visibility, Vws); });
     follow({}, store.scene());
+}
+
+void FeaturesModel::setPictureSaliency(const PictureSaliencyController& saliency) {
+    m_saliency = &saliency;
+    connect(&saliency, &PictureSaliencyController::changed, this, [this] { refresh(PictureShare, PictureShare); });
 }
 
 void FeaturesModel::follow(const Scene& before, const Scene& after) {
@@ -46,7 +55,7 @@ void FeaturesModel::follow(const Scene& before, const Scene& after) {
         before.onlyFeature() == after.onlyFeature())
         return;
     m_opacities = featureOpacities(after.tf);
-    refresh(Eye, Target);
+    refresh(Eye, PictureShare);
 }
 
 void FeaturesModel::refresh(Column first, Column last) {
@@ -109,6 +118,7 @@ QVariant FeaturesModel::text(std::size_t f, int column, int role) const {
 std::optional<double> FeaturesModel::number(std::size_t f, int column) const {
     if (column == Opacity) return m_opacities[f];
     if (column == Target) return m_store.scene().targets().at(f);
+    if (column == PictureShare) return m_saliency ? m_saliency->share(f) : std::nullopt;
     const Measures* const measures = m_results.measures();
     if (!measures || f >= measures->features.size()) return {};
     return column == Visibility ? measures->features[f].visibility : measures->features[f].vws;
@@ -205,7 +215,7 @@ bool FeaturesModel::isDrawn(int row) const {
 
 void FeaturesModel::setReadOnly(bool on) {
     m_readOnly = on;
-    refresh(Eye, Target);
+    refresh(Eye, PictureShare);
 }
 
 } // namespace pellucid::gui

@@ -1,4 +1,4 @@
-// The features as a table: eye, colour and name, range, opacity, visibility, VWS, target.
+// The features as a table: eye, colour and name, range, opacity, visibility, VWS, target, 2D feature saliency.
 #pragma once
 
 #include <QAbstractTableModel>
@@ -10,21 +10,25 @@
 
 namespace pellucid::gui {
 
+class PictureSaliencyController;
+
 /// One row per feature of the scene's transfer function. Eye, name, opacity and target can be edited; each is an undo
 /// step.
 class FeaturesModel : public QAbstractTableModel {
     Q_OBJECT
 public:
-    enum Column { Eye, Name, Range, Opacity, Visibility, Vws, Target, ColumnCount };
+    enum Column { Eye, Name, Range, Opacity, Visibility, Vws, Target, PictureShare, ColumnCount };
     enum class Lock { None, Limited, Locked };    ///< what an optimization may do to the opacity
     static constexpr int LockRole = Qt::UserRole; ///< a Lock, of any column
 
     FeaturesModel(SessionStore& store, Results& results, QObject* parent = nullptr);
+    /// Has shares of the picture from now on; `saliency` outlives this.
+    void setPictureSaliency(const PictureSaliencyController& saliency);
 
     int rowCount(const QModelIndex& parent = {}) const override;
     int columnCount(const QModelIndex& parent = {}) const override;
-    /// EditRole gives numbers in [0,1] for Opacity, Visibility, Vws and Target, and whether the eye is open;
-    /// DecorationRole of Name the colour.
+    /// EditRole gives numbers in [0,1] for Opacity, Visibility, Vws, Target and PictureShare, and whether the eye is
+    /// open; DecorationRole of Name the colour.
     QVariant data(const QModelIndex& index, int role = Qt::DisplayRole) const override;
     QVariant headerData(int section, Qt::Orientation orientation, int role = Qt::DisplayRole) const override;
     Qt::ItemFlags flags(const QModelIndex& index) const override;
@@ -47,6 +51,7 @@ private:
 
     SessionStore& m_store;
     Results& m_results;
+    const PictureSaliencyController* m_saliency = nullptr;
     int m_rows = 0;
     std::vector<double> m_opacities;
     bool m_readOnly = false;

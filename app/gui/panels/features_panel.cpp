@@ -19,6 +19,7 @@
 #include "panels/density_slider.h"
 #include "panels/features_model.h"
 #include "panels/panel.h"
+#include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
 #include "panels/target_bars.h"
 #include "panels/variable_words.h"
@@ -279,6 +280,13 @@ void FeaturesPanel::prepareTable() {
     m_table->setItemDelegateForColumn(FeaturesModel::Eye, new EyeDelegate(*m_model, m_table));
     for (const auto column : {FeaturesModel::Visibility, FeaturesModel::Vws, FeaturesModel::Target})
         m_table->setColumnHidden(column, true); // the bars below show them
+    m_model->setPictureSaliency(m_controllers.pictureSaliency);
+    followParts(
+        m_services, this,
+        [this] {
+            m_table->setColumnHidden(FeaturesModel::PictureShare, !m_services.scene().session.pictureSaliency->on);
+        },
+        &Session::pictureSaliency);
     m_table->verticalHeader()->hide();
     m_table->verticalHeader()->setDefaultSectionSize(kRowHeight);
     QHeaderView& header = *m_table->horizontalHeader();
@@ -287,6 +295,7 @@ void FeaturesPanel::prepareTable() {
     header.setSectionResizeMode(FeaturesModel::Eye, QHeaderView::Fixed);
     m_table->setColumnWidth(FeaturesModel::Eye, kEye);
     header.setSectionResizeMode(FeaturesModel::Range, QHeaderView::ResizeToContents);
+    header.setSectionResizeMode(FeaturesModel::PictureShare, QHeaderView::ResizeToContents);
     header.setSectionResizeMode(FeaturesModel::Opacity, QHeaderView::Fixed);
     m_table->setColumnWidth(FeaturesModel::Opacity, kOpacity);
     header.setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);

@@ -13,14 +13,21 @@ namespace pellucid::gui {
 /// somebody has released it.
 class KeptRenderer {
 public:
-    Image render(const PictureInput& input, const JobControl& job) {
+    /// What `draw` makes with the renderer of the volume.
+    template <class Draw>
+    auto use(const std::shared_ptr<const Volume>& volume, const JobControl& job, const Draw& draw) {
         const std::lock_guard lock(m_mutex);
         job.throwIfStopped();
-        if (m_volume != input.volume) {
-            m_renderer = makeCpuRenderer(input.volume);
-            m_volume = input.volume;
+        if (m_volume != volume) {
+            m_renderer = makeCpuRenderer(volume);
+            m_volume = volume;
         }
-        return m_renderer->render(input.camera, input.tf, input.settings, job);
+        return draw(*m_renderer);
+    }
+    Image render(const PictureInput& input, const JobControl& job) {
+        return use(input.volume, job, [&](ImageRenderer& renderer) {
+            return renderer.render(input.camera, input.tf, input.settings, job);
+        });
     }
     /// Unless it is drawing at this moment.
     void release() {

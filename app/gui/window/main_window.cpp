@@ -26,6 +26,7 @@
 #include "view/light_layer.h"
 #include "view/picture_pair.h"
 #include "view/region_layer.h"
+#include "view/saliency_layer.h"
 #include "widgets/layouts.h"
 #include "widgets/named.h"
 #include "widgets/scrolled.h"
@@ -75,6 +76,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     middle->setLayout(inset(columnOf({new NoticeBar(m_services->notices(), middle), {m_row, 1}}, 0), {}));
     setCentralWidget(middle);
 
+    m_view->overlay().add(std::make_unique<SaliencyLayer>(m_controllers->pictureSaliency, m_view->overlay()));
     m_view->overlay().add(std::make_unique<SliceLayer>());
     addClipHandles(*m_services, *m_controllers->clipHandles, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_services, m_view->overlay()));
@@ -90,6 +92,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
         const PictureInfo& picture = m_view->picture();
         m_controllers->saving.setSeenSize({picture.width, picture.height});
         m_controllers->refining.setViewSize({picture.width, picture.height});
+        m_controllers->pictureSaliency.setPictureSize({picture.width, picture.height});
         m_controllers->player.pictureShown(picture.volume);
         Q_EMIT settledChanged();
     });
