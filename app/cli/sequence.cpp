@@ -19,6 +19,7 @@
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
+#include "render/feature_pictures.h"
 #include "render/memory_needs.h"
 #include "report/image_plot.h"
 #include "report/svg_plot.h"
@@ -45,6 +46,7 @@ struct Options {
     std::optional<TargetInput> targets;
     std::optional<int> from;
     bool compare = false, requireConverged = false, noPictures = false, overGaps = false;
+    bool pictured = false; ///< --2dfs
     std::string out;
     std::optional<double> framesPerSecond;
     std::optional<std::string> movie;
@@ -249,6 +251,7 @@ Json Sequence::jsonOf(const Frame& frame) const {
     Json json{{"frame", f.frame},           {"time", f.time},       {"vws", f.vws},
               {"visibility", f.visibility}, {"opacity", f.opacity}, {"target", f.targets},
               {"empty", f.empty},           {"file", f.file},       {"objective", f.objective}};
+    if (m_o.pictured) json["fs"] = f.fs;
     if (f.flicker) json["flicker"] = *f.flicker;
     if (f.moves) {
         json["moves"] = *f.moves;
@@ -258,6 +261,7 @@ Json Sequence::jsonOf(const Frame& frame) const {
         json["static"] = {{"vws", frame.staticFigures.vws},
                           {"visibility", frame.staticFigures.visibility},
                           {"objective", frame.staticFigures.objective}};
+    if (m_o.compare && m_o.pictured) json["static"]["fs"] = frame.staticFigures.fs;
     json["tf"] = Json(jsonFromTf(frame.scene.tf));
     return json;
 }
@@ -278,15 +282,23 @@ void Sequence::finish(std::vector<Frame>& batch) {
             if (frame.before) frame.staticFigures.flicker = 0; // the same transfer function
         }
         writeTf(frame.scene.tf, fileOf(m_o, frame.number, kTfSuffix));
-        const auto draw = [&](const Scene& scene, const char* suffix) {
+        const auto draw = [&](const Scene& scene, const char* suffix, FrameFigures& figures) {
+            if (m_o.noPictures && !m_o.pictured) return;
             const PictureInput picture = m_o.scene.picture.pictureOf(scene);
             const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
-            writeImage(renderer->render(picture.camera, picture.tf, picture.settings, job),
-                       fileOf(m_o, frame.number, suffix));
+            Image image;
+            if (m_o.pictured) {
+                FeaturePictures pictures =
+                    featurePictures(*renderer, picture.camera, picture.tf, picture.settings, job);
+                figures.fs = featureSaliency(pictures, job).shares;
+                image = std::move(pictures.whole);
+            } else {
+                image = renderer->render(picture.camera, picture.tf, picture.settings, job);
+            }
+            if (!m_o.noPictures) writeImage(image, fileOf(m_o, frame.number, suffix));
         };
-        if (m_o.noPictures) return;
-        draw(frame.scene, kPictureSuffix);
-        if (m_o.compare) draw(frame.asStatic, kStaticSuffix);
+        draw(frame.scene, kPictureSuffix, frame.figures);
+        if (m_o.compare) draw(frame.asStatic, kStaticSuffix, frame.staticFigures);
     });
     for (const Frame& frame : batch) {
         m_frames.push_back(jsonOf(frame));
@@ -489,6 +501,10 @@ Command addSequence(CLI::App& program) {
         ->required();
     app->add_flag("--flicker-over-gaps", o->overGaps,
                   "report flicker after missing or broken frames, too, by comparing with the frame before the gap");
+    app->add_flag(
+        "--2dfs", o->pictured,
+        "also tell each feature's 2D feature saliency, its share of what catches the eye in the picture of the "
+        "frame, and draw its curves");
     app->add_flag("--no-pictures", o->noPictures, "do not write pictures of the frames");
     addOutputFile(*app, "--mp4", o->movie, "also write a film of the pictures; needs ffmpeg", checkMovieSuffix);
     addValue(*app, "--fps", "N", o->framesPerSecond, realAbove(0, 240), "frames per second of the film (default 10)");

@@ -93,6 +93,12 @@ bool TemporalCurves::empty() const {
     });
 }
 
+bool TemporalCurves::hasPictures() const {
+    return std::ranges::any_of(runs, [](const TemporalRun& run) {
+        return std::ranges::any_of(run.frames, [](const FrameFigures& f) { return !f.fs.empty(); });
+    });
+}
+
 Plot temporalVwsPlot(const TemporalCurves& curves, std::size_t run, double highest) {
     Plot plot = plotOf(curves, titled(curves, "Visibility-weighted saliency", run), "VWS");
     addFeatures(plot, curves, run, &FrameFigures::vws);
@@ -105,6 +111,13 @@ Plot temporalVwsPlot(const TemporalCurves& curves, std::size_t run, double highe
 Plot temporalVisibilityPlot(const TemporalCurves& curves, std::size_t run) {
     Plot plot = plotOf(curves, titled(curves, "Feature visibility", run), "FV");
     addFeatures(plot, curves, run, &FrameFigures::visibility);
+    fitLinear(plot, 1);
+    return plot;
+}
+
+Plot temporalPicturePlot(const TemporalCurves& curves, std::size_t run) {
+    Plot plot = plotOf(curves, titled(curves, "2D feature saliency", run), "2DFS");
+    addFeatures(plot, curves, run, &FrameFigures::fs);
     fitLinear(plot, 1);
     return plot;
 }
@@ -139,6 +152,7 @@ std::vector<Plot> temporalPlots(const TemporalCurves& curves) {
     plots.push_back(temporalFlickerPlot(curves));
     for (std::size_t r = 0; r < curves.runs.size(); ++r) {
         plots.push_back(temporalVisibilityPlot(curves, r));
+        if (curves.hasPictures()) plots.push_back(temporalPicturePlot(curves, r));
         plots.push_back(temporalOpacityPlot(curves, r));
     }
     return plots;
@@ -147,8 +161,14 @@ std::vector<Plot> temporalPlots(const TemporalCurves& curves) {
 std::string csvOf(const TemporalCurves& curves) {
     CsvTable csv;
     for (const char* column : {"run", "frame", "file", "time", "F", "flicker", "moves", "seconds"}) csv << column;
+    using Values = std::vector<double> FrameFigures::*;
+    std::vector<std::pair<const char*, Values>> columns{{"VWS ", &FrameFigures::vws},
+                                                        {"target ", &FrameFigures::targets},
+                                                        {"FV ", &FrameFigures::visibility},
+                                                        {"opacity ", &FrameFigures::opacity}};
+    if (curves.hasPictures()) columns.emplace_back("2DFS ", &FrameFigures::fs);
     for (const std::string& feature : curves.features)
-        for (const char* what : {"VWS ", "target ", "FV ", "opacity "}) csv << what + feature;
+        for (const auto& [what, values] : columns) csv << what + feature;
     csv << "problem";
     csv.endLine();
     for (const TemporalRun& run : curves.runs)
@@ -157,8 +177,7 @@ std::string csvOf(const TemporalCurves& curves) {
             csv << run.name << f.frame << f.file << f.time << when(f.problem.empty(), f.objective) << f.flicker
                 << f.moves << when(f.moves.has_value(), f.seconds);
             for (std::size_t i = 0; i < curves.features.size(); ++i)
-                for (const std::vector<double>* values : {&f.vws, &f.targets, &f.visibility, &f.opacity})
-                    csv << (i < values->size() ? std::optional((*values)[i]) : std::nullopt);
+                for (const auto& [what, values] : columns) csv << at(f.*values, i);
             csv << f.problem;
             csv.endLine();
         }

@@ -22,6 +22,7 @@ struct TemporalCurves {
     std::vector<TemporalRun> runs; ///< of the same series; where two are compared the second is the static one
     int present = -1;              ///< a frame that is pointed out; −1: none
     bool empty() const;            ///< no frame could be read
+    bool hasPictures() const;      ///< of some frame 2D feature saliency is known
 };
 
 /// VWS of each feature in its colour over the frames of one run, targets dashed. Frames that cannot be read are gaps.
@@ -29,6 +30,8 @@ struct TemporalCurves {
 Plot temporalVwsPlot(const TemporalCurves& curves, std::size_t run, double highest = 0);
 /// FV of each feature.
 Plot temporalVisibilityPlot(const TemporalCurves& curves, std::size_t run);
+/// 2D feature saliency of each feature (figs 5.12b, 5.13b), where hasPictures().
+Plot temporalPicturePlot(const TemporalCurves& curves, std::size_t run);
 /// Opacity of each feature's peak (α of a path of length d0).
 Plot temporalOpacityPlot(const TemporalCurves& curves, std::size_t run, bool logarithmic = false);
 /// F of all runs.
@@ -36,12 +39,12 @@ Plot temporalObjectivePlot(const TemporalCurves& curves);
 /// Flicker of all runs, mean ΔE.
 Plot temporalFlickerPlot(const TemporalCurves& curves);
 
-/// All of them: VWS of each run with a common axis, F, flicker, then FV and opacities of each run.
+/// All of them: VWS of each run with a common axis, F, flicker, then FV, 2D feature saliency and opacities of each run.
 std::vector<Plot> temporalPlots(const TemporalCurves& curves);
 
 /// A line per frame of each run: run, frame, file, time, F, flicker, moves, seconds, then for each feature its VWS, its
-/// target, its FV and its opacity, and why the frame could not be read. What is not known is empty. Numbers with all
-/// their digits.
+/// target, its FV, its opacity and, where hasPictures(), its 2DFS, and why the frame could not be read. What is not
+/// known is empty. Numbers with all their digits.
 std::string csvOf(const TemporalCurves& curves);
 
 } // namespace pellucid

@@ -18,6 +18,7 @@ struct FrameFigures {
     std::vector<double> vws;        ///< W, per feature
     std::vector<double> visibility; ///< FV
     std::vector<double> opacity;    ///< of the peaks
+    std::vector<double> fs;         ///< 2D feature saliency of its picture; empty: nobody has looked at one
     std::vector<double> targets;    ///< shares
     std::vector<bool> empty;        ///< whether the frame has no voxel of it
     double objective = 0;           ///< F

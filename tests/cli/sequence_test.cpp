@@ -95,6 +95,33 @@ TEST_CASE("sequence optimizes every frame and compares with the static transfer 
     CHECK(readImage(w.path("o/curves.png").string()).width > 0);
 }
 
+TEST_CASE("sequence tells the 2D feature saliency of each frame's picture", "[cli][sequence]") {
+    const Series w;
+    const json j = w.json(kOptimize + Words{"--coherence", "0", "--compare", "--2dfs", "--out", "o"});
+    for (int f = 0; f < kFrames; ++f) {
+        const std::string number = std::to_string(f);
+        const auto fs = j["frames"][static_cast<std::size_t>(f)]["fs"].get<std::vector<double>>();
+        REQUIRE(fs.size() == 3);
+        CHECK(fs[0] + fs[1] + fs[2] == Approx(1));
+        // What measure tells of the frame under its transfer function.
+        const json alone =
+            w.json({"measure", "f%02d.raw", "--raw", "14,14,14,u8", "--range", "0,255", "--frame", number, "--tf",
+                    "o/frame_000" + number + ".tf.json", "--size", "32x24", "--engine", "cpu", "--2dfs"});
+        for (std::size_t i = 0; i < 3; ++i)
+            CHECK(alone["features"][i]["fs"].get<double>() == Approx(fs[i]).margin(1e-6));
+    }
+    CHECK(j["frames"][4]["static"]["fs"] != j["frames"][4]["fs"]);
+    CHECK(w.read("o/curves.csv").find("2DFS f1") != std::string::npos);
+    CHECK(w.read("o/curves.svg").find("2D feature saliency, static") != std::string::npos);
+    // Without pictures too, and pictures are those that are drawn without it.
+    const json bare = w.json(kSeries + Words{"--2dfs", "--no-pictures", "--out", "bare"});
+    CHECK(bare["frames"][0]["fs"].size() == 3);
+    CHECK_FALSE(w.has("bare/frame_0000.png"));
+    w.json(kOptimize + Words{"--coherence", "0", "--compare", "--out", "plain"});
+    CHECK(w.read("plain/frame_0003.png") == w.read("o/frame_0003.png"));
+    CHECK(w.read("plain/curves.csv").find("2DFS") == std::string::npos);
+}
+
 TEST_CASE("with coherence frames flicker less, as near to the targets as it says", "[cli][sequence]") {
     const Series w;
     const json free = w.json(kOptimize + Words{"--coherence", "0", "--no-pictures", "--out", "free"});

@@ -104,7 +104,7 @@ TEST_CASE("2D feature saliency follows the picture when the hand rests", "[pictu
         CHECK(*saliencyOf(w).share(0) == before);
     }
     SECTION("until it is switched off") {
-        w.child<QAction>("pictureSaliencyAction").trigger();
+        w.child<QAction>("followPictureAction").trigger();
         CHECK(saliencyOf(w).state() == State::Off);
         CHECK_FALSE(saliencyOf(w).share(0));
         CHECK(table.isColumnHidden(FeaturesModel::PictureShare));

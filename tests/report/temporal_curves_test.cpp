@@ -97,6 +97,23 @@ TEST_CASE("the table of a series has a line per frame and run", "[temporal]") {
     CHECK(csv.find("\nstatic,2,,1,0,,,,") != std::string::npos);
 }
 
+TEST_CASE("2D feature saliency has curves and columns where pictures were looked at", "[temporal]") {
+    TemporalCurves curves = example();
+    CHECK_FALSE(curves.hasPictures());
+    curves.runs[0].frames[1].fs = {0.75, 0.25}; // of frame 3 alone
+    CHECK(curves.hasPictures());
+    const Plot plot = temporalPicturePlot(curves, 0);
+    REQUIRE(plot.series.size() == 2);
+    CHECK(plot.series[1].points == std::vector<PlotPoint>{{3, 0.25}});
+    CHECK(plot.title == "2D feature saliency, optimize");
+    CHECK(temporalPlots(curves).size() == 10);
+    const std::string csv = csvOf(curves);
+    CHECK(csv.find("FV skin,opacity skin,2DFS skin,VWS =bone") != std::string::npos);
+    CHECK(csv.find("\noptimize,3,,1.5,0.02,1.5,2,0.25,0.52,0.5,0.5,0.01,0.75,0.48,0.5,0.25,0.1,0.25,\n") !=
+          std::string::npos);
+    CHECK(csv.find("\nstatic,2,,1,0,,,,0.5,0.5,0.5,0.01,,0.5,0.5,0.25,0.1,,\n") != std::string::npos);
+}
+
 TEST_CASE("figures of a series are means over what could be read", "[temporal]") {
     const SequenceFigures s = summaryOf(example().runs[0].frames);
     CHECK(s.frames == 4);

@@ -140,7 +140,7 @@ void PictureSaliencyController::addActions() {
     ActionMenu menu(m_services.actions(), tr("&View") + "/" + tr("2&D saliency"),
                     [this] { return m_services.isEditable(); });
     menu.addCheck(
-        "pictureSaliencyAction", tr("&Show 2D feature saliency"), "Shift+D",
+        "followPictureAction", tr("&Show 2D feature saliency"), "Shift+D",
         tr("How much of what catches the eye in this picture each feature has, whenever the picture rests"),
         [&store] { return store.session().pictureSaliency->on; },
         [&store] {
