@@ -125,12 +125,15 @@ std::string featureTable(const Report& report) {
     const OptimizeState &start = run.history.front(), &answer = run.history[run.best];
     std::string html =
         "<div class=\"wide\"><table><tr><th>Feature</th><th>Target</th><th>VWS before</th><th>VWS after</th>"
-        "<th>Visibility before</th><th>Visibility after</th><th>Opacity before</th>"
-        "<th>Opacity after</th><th>Bounds</th></tr>\n";
+        "<th>Visibility before</th><th>Visibility after</th><th>2DFS before</th><th>2DFS after</th>"
+        "<th>Opacity before</th><th>Opacity after</th><th>Bounds</th></tr>\n";
     const auto cell = [](const std::string& text) { return "<td>" + text + "</td>"; };
     for (std::size_t f = 0; f < run.features.size(); ++f) {
         const auto visibility = [&](const std::vector<FeatureMeasures>& measures) {
             return f < measures.size() ? fixedText(measures[f].visibility, 4) : std::string("–");
+        };
+        const auto share = [&](const std::vector<double>& fs) {
+            return f < fs.size() ? fixedText(fs[f], 4) : std::string("–");
         };
         std::string bounds = "–";
         if (f < run.start->limits.size()) {
@@ -145,9 +148,12 @@ std::string featureTable(const Report& report) {
                 escapedXml(run.features[f]) + "</td>" + cell(fixedText(run.targets[f], 4)) +
                 cell(fixedText(start.vws[f], 4)) + cell(fixedText(answer.vws[f], 4)) +
                 cell(visibility(report.measuresBefore)) + cell(visibility(report.measuresAfter)) +
-                cell(shortText(start.opacity[f])) + cell(shortText(answer.opacity[f])) + cell(bounds) + "</tr>\n";
+                cell(share(report.fsBefore)) + cell(share(report.fsAfter)) + cell(shortText(start.opacity[f])) +
+                cell(shortText(answer.opacity[f])) + cell(bounds) + "</tr>\n";
     }
-    return html + "</table></div>\n";
+    return html +
+           "</table></div>\n<p class=\"faint\">2DFS, 2D feature saliency: each feature's share of what catches the "
+           "eye in the picture (thesis, appendix A).</p>\n";
 }
 
 std::string beforeAndAfter(const Report& report) {

@@ -11,6 +11,7 @@
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "render/camera_motion.h"
+#include "render/feature_pictures.h"
 #include "render/ssim.h"
 #include "report/csv.h"
 #include "report/html_report.h"
@@ -194,17 +195,28 @@ Report makeReport(const ReportRequest& request, Workspace& workspace, const JobC
     report.settings = settingsOf(request, workspace.engine(input).name());
 
     const auto renderer = makeRenderer(request.scene.session.measure->engine, request.scene.volume);
+    const auto inputOf = [&](std::size_t move) { return pictureInput(sceneOf(move), request.width, request.height); };
     const auto picture = [&](std::size_t move) {
-        const PictureInput p = pictureInput(sceneOf(move), request.width, request.height);
-        const Image image = renderer->render(p.camera, p.tf, p.settings, job.part(piece++, pieces));
+        const PictureInput p = inputOf(move);
+        const JobControl part = job.part(piece++, pieces);
+        Image image = renderer->render(p.camera, p.tf, p.settings, part);
         job.throwIfStopped();
         return image;
     };
-    const Image answer = picture(run.best);
+    const auto looked = [&](std::size_t move, std::vector<double>& fs) {
+        const PictureInput p = inputOf(move);
+        const JobControl part = job.part(piece++, pieces);
+        FeaturePictures pictures = featurePictures(*renderer, p.camera, p.tf, p.settings, part);
+        fs = featureSaliency(pictures, {job.stop, {}}).shares;
+        job.throwIfStopped();
+        return std::move(pictures.whole);
+    };
+    const Image answer = looked(run.best, report.fsAfter);
     report.after = encoded(answer);
     for (const std::size_t move : chosen) {
-        const Image image = move == run.best ? answer : picture(move);
+        const Image image = move == run.best ? answer : move == 0 ? looked(0, report.fsBefore) : picture(move);
         if (move == 0) report.before = encoded(image);
+        if (move == 0 && move == run.best) report.fsBefore = report.fsAfter;
         report.states.push_back({move, ssim(image, answer), encoded(reduced(image, kWidthOfStates))});
         job.throwIfStopped();
     }

@@ -47,6 +47,7 @@ struct Report {
     ValueRange window;                                          ///< data units of intensity 0 and 1
     std::string unit;                                           ///< of the data; may be empty
     std::vector<FeatureMeasures> measuresBefore, measuresAfter; ///< per feature
+    std::vector<double> fsBefore, fsAfter;                      ///< 2D feature saliency of both pictures
     std::vector<ReportState> states;                            ///< in the order of the history
     std::vector<std::pair<std::string, std::string>> settings;  ///< what, and how it was set
     std::vector<std::string> remarks;                           ///< sentences about the answer

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "image_io/image_file.h"
+#include "render/feature_pictures.h"
 #include "render/ssim.h"
 #include "report/html_report.h"
 #include "report/report.h"
@@ -165,6 +166,15 @@ TEST_CASE("a report shows what its run began with and came to", "[report]") {
     // Visibilities are measured, of both ends.
     REQUIRE(report.measuresAfter.size() == 3);
     CHECK(report.measuresAfter[2].visibility > report.measuresBefore[2].visibility);
+
+    // So is what of both pictures catches the eye.
+    const PictureInput p = pictureInput(sceneAtStart(c.run, c.scene), 64, 48);
+    const auto renderer = makeCpuRenderer(p.volume);
+    CHECK(report.fsBefore.size() == 3);
+    for (std::size_t f = 0; f < 3; ++f)
+        CHECK(report.fsBefore[f] ==
+              Approx(featureSaliency(featurePictures(*renderer, p.camera, p.tf, p.settings)).shares[f]).margin(0.01));
+    CHECK(report.fsAfter[2] > report.fsBefore[2]);
 
     SECTION("the SSIM is that of the pictures") {
         const TempFolder folder;
