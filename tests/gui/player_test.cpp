@@ -517,6 +517,23 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     QFile csv(folder.filePath("curves.csv"));
     REQUIRE(csv.open(QIODevice::ReadOnly));
     CHECK(QString::fromUtf8(csv.readAll()).split('\n', Qt::SkipEmptyParts).size() == 1 + 2 * 6);
+    // What catches the eye in the pictures is measured when it is chosen, and stays known.
+    CHECK_FALSE(curves.hasPictures());
+    auto& shown = w.child<QComboBox>("temporalShown");
+    while (shown.currentIndex() < 3) QTest::keyClick(&shown, Qt::Key_Down);
+    CHECK(panel.knownCount() == 0);
+    w.child<QToolButton>("temporalMeasure").click();
+    REQUIRE(waitFor([&] { return panel.knownCount() == 6; }));
+    const TemporalCurves pictured = panel.curves();
+    for (const TemporalRun& run : pictured.runs)
+        for (const FrameFigures& f : run.frames) {
+            REQUIRE(f.fs.size() == 3);
+            CHECK(f.fs[0] + f.fs[1] + f.fs[2] == Approx(1));
+        }
+    CHECK(pictured.runs[0].frames[4].fs != pictured.runs[1].frames[4].fs);
+    while (shown.currentIndex() > 0) QTest::keyClick(&shown, Qt::Key_Up);
+    CHECK(panel.knownCount() == 6);
+    CHECK(panel.curves().hasPictures());
     const QImage drawn = w.child<QWidget>("temporalDynamic").grab().toImage();
     // From another side nothing is known any more.
     Camera camera = w.document().camera();

@@ -5,6 +5,7 @@
 #include "controllers/controllers.h"
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
+#include "render/feature_pictures.h"
 #include "session/scene_data.h"
 #include "tf/tf_range.h"
 #include "widgets/layouts.h"
@@ -15,7 +16,9 @@
 namespace pellucid::gui {
 namespace {
 
-enum Shown { kVws, kVisibility, kOpacity };
+enum Shown { kVws, kVisibility, kOpacity, kPicture };
+
+constexpr int kPictureSize = 512; ///< pixels of the side of the pictures that 2DFS is of
 
 bool same(const std::shared_ptr<const TransferFunction>& a, const std::shared_ptr<const TransferFunction>& b) {
     return a == b || (a != nullptr && b != nullptr && *a == *b);
@@ -47,14 +50,17 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
             },
             WhenBusy::StopOld, &m_lane) {
     auto* plots = makePlots();
-    m_shown->addItems({tr("VWS"), tr("FV"), tr("Opacity")});
+    m_shown->addItems({tr("VWS"), tr("FV"), tr("Opacity"), tr("2DFS")});
     m_progress->setMaximumSize(120, 12);
     m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
     makeFaint(*m_readOut);
     auto* row = rowOf({m_shown, m_overGaps, m_measure, m_progress, {m_words, 3}, {m_readOut, 2}, m_export});
     setLayout(inset(columnOf({{plots, 1}, row}, 2), {4, 4, 4, 2}));
 
-    connect(m_shown, &QComboBox::activated, this, &TemporalPanel::refresh);
+    connect(m_shown, &QComboBox::activated, this, [this] {
+        refresh();
+        next();
+    });
     connect(m_overGaps, &QCheckBox::toggled, this, [this] {
         refresh();
         next();
@@ -88,7 +94,15 @@ TemporalPanel::Known TemporalPanel::figuresFor(const Task& task, const JobContro
                                   const std::shared_ptr<const TransferFunction>& before) {
             scene.tf = written(*tf);
             const auto was = before ? std::optional(written(*before)) : std::nullopt;
-            return figuresOf(scene, was ? &*was : nullptr, m_workspace, quiet);
+            FrameFigures figures = figuresOf(scene, was ? &*was : nullptr, m_workspace, quiet);
+            if (known.pictured) {
+                const PictureInput picture = pictureInput(scene, kPictureSize, kPictureSize);
+                const auto renderer = makeCpuRenderer(picture.volume);
+                figures.fs = featureSaliency(
+                                 featurePictures(*renderer, picture.camera, picture.tf, picture.settings, quiet), quiet)
+                                 .shares;
+            }
+            return figures;
         };
         known.dynamic = measured(known.tf, known.before);
         known.fixed = same(known.tf, known.fixedTf) && same(known.before, known.fixedBefore)
@@ -104,8 +118,9 @@ QLayout* TemporalPanel::makePlots() {
     const std::pair<const char*, QString> plots[] = {
         {"temporalDynamic",
          tr("Under the transfer functions that follow the frames: the share of each feature of what\n"
-            "catches the eye, 0 to 1 (VWS; dashed: the targets), its visibility (FV), or the\n"
-            "opacity of its peak. Double-click: export.")},
+            "catches the eye, 0 to 1 (VWS; dashed: the targets), its visibility (FV), the opacity\n"
+            "of its peak, or its share of what catches the eye in the picture (2DFS).\n"
+            "Double-click: export.")},
         {"temporalStatic", tr("The same under the keys alone, as in the mode static")},
         {"temporalObjective", tr("F, the root mean square distance of the features' VWS from their targets")},
         {"temporalFlicker", tr("Flicker: mean colour difference ΔE (CIELAB) per pixel between a frame under its\n"
@@ -134,6 +149,7 @@ TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
     known.ground = *session.ground;
     known.display = *session.display;
     known.window = scene.volume->range();
+    known.pictured = m_shown->currentIndex() == kPicture;
     known.tf = session.tfAt(frame);
     known.fixedTf = track.at(frame);
     if (const int before = neighbourBefore(*scene.series, frame, isOverGaps()); before >= 0) {
@@ -150,8 +166,9 @@ bool TemporalPanel::isCurrent(const Known& known, const Known& wanted) {
     return known.measure == wanted.measure && known.camera == wanted.camera && known.clipping == wanted.clipping &&
            known.hsb == wanted.hsb && (!known.hsb.on || sameData(*known.variables, *wanted.variables)) &&
            known.ground == wanted.ground && known.display == wanted.display && known.window == wanted.window &&
-           known.targets == wanted.targets && same(known.tf, wanted.tf) && same(known.before, wanted.before) &&
-           same(known.fixedTf, wanted.fixedTf) && same(known.fixedBefore, wanted.fixedBefore);
+           (known.pictured || !wanted.pictured) && known.targets == wanted.targets && same(known.tf, wanted.tf) &&
+           same(known.before, wanted.before) && same(known.fixedTf, wanted.fixedTf) &&
+           same(known.fixedBefore, wanted.fixedBefore);
 }
 
 bool TemporalPanel::isKnown(int frame) const {
@@ -244,6 +261,8 @@ std::vector<Plot> TemporalPanel::plots() const {
             return temporalVisibilityPlot(now, run);
         case kOpacity:
             return temporalOpacityPlot(now, run);
+        case kPicture:
+            return temporalPicturePlot(now, run);
         default:
             double highest = 0;
             for (std::size_t r = 0; r < now.runs.size(); ++r) highest = std::max(highest, temporalVwsPlot(now, r).y.hi);

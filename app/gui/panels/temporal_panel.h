@@ -50,6 +50,7 @@ private:
         GroundView ground;
         DisplaySettings display;
         ValueRange window;
+        bool pictured = false; ///< 2D feature saliency is known, too
         std::vector<double> targets;
         std::shared_ptr<const TransferFunction> tf, before; ///< of the frame, and of neighbourBefore(); null: none
         std::shared_ptr<const TransferFunction> fixedTf, fixedBefore; ///< likewise, by the keys alone
@@ -79,7 +80,8 @@ private:
     QComboBox* m_shown =
         named(new QComboBox(this), "temporalShown",
               tr("What the first two plots show of each feature: share of saliency (VWS), visibility (FV),\n"
-                 "or the opacity of its peak, of a path of one reference length d0"));
+                 "the opacity of its peak, of a path of one reference length d0, or 2D feature saliency (2DFS),\n"
+                 "its share of what catches the eye in a picture of 512 × 512 pixels, which is measured when chosen"));
     QCheckBox* m_overGaps = named(new QCheckBox(tr("Flicker over gaps"), this), "temporalOverGaps",
                                   tr("After missing or broken frames, compare with the frame before the gap;\n"
                                      "otherwise no flicker is reported there"));
