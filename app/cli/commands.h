@@ -31,6 +31,7 @@ Command addOptimize(CLI::App& program);
 Command addSequence(CLI::App& program);
 Command addSpace(CLI::App& program);
 Command addSaliencyMap(CLI::App& program);
+Command addCompare(CLI::App& program);
 Command addProbe(CLI::App& program);
 Command addViews(CLI::App& program);
 Command addBench(CLI::App& program);

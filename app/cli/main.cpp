@@ -202,7 +202,8 @@ int run(const std::vector<std::string>& arguments) {
     const std::array commands{addInfo(program),     addSamples(program),  addPresets(program),     addGenerate(program),
                               addRender(program),   addMeasure(program),  addFields(program),      addRefine(program),
                               addOptimize(program), addSequence(program), addSpace(program),       addPropose(program),
-                              addProbe(program),    addViews(program),    addSaliencyMap(program), addBench(program)};
+                              addProbe(program),    addViews(program),    addSaliencyMap(program), addCompare(program),
+                              addBench(program)};
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);
 

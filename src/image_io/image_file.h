@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/image.h"
-#include "saliency/image_saliency.h"
+#include "base/plane.h"
 
 namespace pellucid {
 

@@ -32,26 +32,44 @@ std::array<std::size_t, 3> shown(const float* pixel) {
     return out;
 }
 
+/// Of two pixels as a screen shows them.
+double differenceOf(const float* a, const float* b) {
+    const auto p = shown(a), q = shown(b);
+    if (p == q) return 0;
+    const auto& light = screenLight();
+    return deltaE(labFromLinear({light[p[0]], light[p[1]], light[p[2]]}),
+                  labFromLinear({light[q[0]], light[q[1]], light[q[2]]}));
+}
+
+void requireOneSize(const Image& a, const Image& b) {
+    if (a.width != b.width || a.height != b.height)
+        throw Error("the pictures differ in size", "colour difference", "draw them in one size");
+}
+
 } // namespace
 
 double meanDeltaE(const Image& a, const Image& b) {
-    if (a.width != b.width || a.height != b.height)
-        throw Error("the pictures differ in size", "colour difference", "draw them in one size");
+    requireOneSize(a, b);
     if (a.rgba.empty()) return 0;
-    const auto& light = screenLight();
     std::vector<double> rows(static_cast<std::size_t>(a.height), 0.0);
     parallelFor(rows.size(), [&](std::size_t row) {
         const int y = static_cast<int>(row);
-        for (int x = 0; x < a.width; ++x) {
-            const auto p = shown(a.pixel(x, y)), q = shown(b.pixel(x, y));
-            if (p == q) continue;
-            rows[row] += deltaE(labFromLinear({light[p[0]], light[p[1]], light[p[2]]}),
-                                labFromLinear({light[q[0]], light[q[1]], light[q[2]]}));
-        }
+        for (int x = 0; x < a.width; ++x) rows[row] += differenceOf(a.pixel(x, y), b.pixel(x, y));
     });
     double sum = 0;
     for (const double row : rows) sum += row;
     return sum / (static_cast<double>(a.width) * a.height);
+}
+
+Plane deltaEOf(const Image& a, const Image& b) {
+    requireOneSize(a, b);
+    Plane difference(a.width, a.height);
+    parallelFor(static_cast<std::size_t>(a.height), [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < a.width; ++x)
+            difference.row(y)[x] = static_cast<float>(differenceOf(a.pixel(x, y), b.pixel(x, y)));
+    });
+    return difference;
 }
 
 std::vector<double> labPixels(const Image& image) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "base/plane.h"
 
 namespace pellucid {
 
@@ -12,6 +13,9 @@ namespace pellucid {
 /// 100: black to white. Components are rounded to 8 bits, as screens show them. The same bits for any thread count.
 /// Throws Error for pictures of different sizes.
 double meanDeltaE(const Image& a, const Image& b);
+
+/// The same of each pixel. Throws likewise.
+Plane deltaEOf(const Image& a, const Image& b);
 
 /// CIELAB of what is seen of each pixel over black: L*, a*, b* one after the other, not rounded.
 std::vector<double> labPixels(const Image& image);

@@ -20,9 +20,9 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",   "samples", "presets",  "generate",    "render", "measure",
-                                         "fields", "propose", "refine",   "optimize",    "probe",  "views",
-                                         "space",  "bench",   "sequence", "saliency-map"};
+const std::vector<std::string> kCommands{"info",   "samples", "presets",  "generate",     "render", "measure",
+                                         "fields", "propose", "refine",   "optimize",     "probe",  "views",
+                                         "space",  "bench",   "sequence", "saliency-map", "compare"};
 
 std::string sourceFile(const std::string& path) {
     std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);

@@ -6,6 +6,7 @@
 
 #include "cli_runner.h"
 #include "image_io/image_file.h"
+#include "saliency/image_saliency.h"
 
 using nlohmann::json;
 using namespace pellucid;

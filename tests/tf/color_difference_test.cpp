@@ -45,6 +45,10 @@ TEST_CASE("the difference of pictures is the mean over their pixels", "[deltae]"
     CHECK(meanDeltaE(black, black) == 0);
     CHECK(meanDeltaE(black, half) == Approx(50).margin(1e-3)); // half of the pixels differ by 100
     CHECK(meanDeltaE(half, black) == meanDeltaE(black, half));
+    const Plane map = deltaEOf(black, half);
+    CHECK(map.row(3)[3] == Approx(100).margin(1e-3));
+    CHECK(map.row(3)[4] == 0);
+    CHECK_THROWS_AS(deltaEOf(black, filled(4, 8, 0, 0, 0)), Error);
     // Transparent white is seen as the black behind it, and what 8 bits cannot tell apart is the same.
     CHECK(meanDeltaE(black, filled(8, 4, 1, 1, 1, 0)) == 0);
     CHECK(meanDeltaE(filled(8, 4, 0.5f, 0.5f, 0.5f), filled(8, 4, 0.5005f, 0.5f, 0.5f)) == 0);

@@ -45,8 +45,18 @@ ViewAngles parseView(const std::string& text, const std::string& option) {
 void CameraOptions::add(CLI::App& app) {
     m_added = true;
     addValue(app, "--camera", "FILE", file, anyText, "camera file (JSON)", kGroup);
+    addView(app, "--view",
+            "degrees; 0,0 looks along +y from the front, z up; or anterior, posterior, left, right, superior, "
+            "inferior, front, back, top, bottom; zoom 1 fits the sphere around the box" +
+                std::string(mayBeBest ? "; best: found together with the opacities" : "") +
+                " (default: the session's camera, else " +
+                std::string(fallback ? "30,20)" : "30,20 with the box as large as it fits, as the window opens)"));
+    app.add_flag("--orthographic", orthographic, "parallel rays (default: perspective)")->group(kGroup);
+}
+
+void CameraOptions::addView(CLI::App& app, const std::string& name, const std::string& help) {
     addValue(
-        app, "--view", std::string("AZIMUTH,ELEVATION[,ZOOM]|SIDE[,ZOOM]") + (mayBeBest ? "|best" : ""),
+        app, name, std::string("AZIMUTH,ELEVATION[,ZOOM]|SIDE[,ZOOM]") + (mayBeBest ? "|best" : ""),
         [this](const std::string& text, const std::string& option) {
             best = text == "best";
             if (best && !mayBeBest)
@@ -56,13 +66,7 @@ void CameraOptions::add(CLI::App& app) {
             namedView = parseNamedView(text, option);
             if (!namedView) view = parseView(text, option);
         },
-        "degrees; 0,0 looks along +y from the front, z up; or anterior, posterior, left, right, superior, inferior, "
-        "front, back, top, bottom; zoom 1 fits the sphere around the box" +
-            std::string(mayBeBest ? "; best: found together with the opacities" : "") +
-            " (default: the session's camera, else " +
-            std::string(fallback ? "30,20)" : "30,20 with the box as large as it fits, as the window opens)"),
-        kGroup);
-    app.add_flag("--orthographic", orthographic, "parallel rays (default: perspective)")->group(kGroup);
+        help, kGroup);
 }
 
 void CameraOptions::applyTo(SceneInputs& inputs) const {

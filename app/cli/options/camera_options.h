@@ -20,6 +20,8 @@ struct CameraOptions {
     std::optional<ViewAngles> fallback; ///< the command's own, where neither options nor session say
 
     void add(CLI::App& app);
+    /// A view alone, under another name.
+    void addView(CLI::App& app, const std::string& name, const std::string& help);
     /// Reads the camera's file. Throws UsageError for options that do not go together, Error for the file.
     void applyTo(SceneInputs& inputs) const;
 
