@@ -54,9 +54,13 @@ std::vector<int> selected(int count, const std::optional<FrameRange>& range, con
     if (wanted.first < 0 || wanted.first >= count || last < wanted.first || last >= count || wanted.stride < 1)
         throw UsageError("the series has no such frames", title,
                          count == 1 ? "it has one, number 0" : "give frames from 0 to " + std::to_string(count - 1));
-    if ((last - wanted.first) / wanted.stride >= kMostFrames)
-        throw UsageError("a series of " + std::to_string((last - wanted.first) / wanted.stride + 1LL) + " frames",
-                         title, "choose at most " + std::to_string(kMostFrames) + " of them");
+    if ((last - wanted.first) / wanted.stride >= kMostFrames) {
+        const std::string problem =
+            "a series of " + std::to_string((last - wanted.first) / wanted.stride + 1LL) + " frames";
+        const std::string advice = "choose at most " + std::to_string(kMostFrames) + " of them";
+        if (range) throw UsageError(problem, title, advice);
+        throw FileError(problem, title, advice); // nobody has asked for so many but the file
+    }
     std::vector<int> frames;
     for (long long f = wanted.first; f <= last; f += wanted.stride) frames.push_back(static_cast<int>(f));
     return frames;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/error.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/file_names.h"
@@ -326,6 +327,9 @@ TEST_CASE("a header that claims endless steps takes no memory", "[series]") {
         folder.write("long.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 1 1 1 2000000000\nencoding: raw\n"
                                   "kinds: domain domain domain time\n\nabcdef"));
     CHECK_THROWS_WITH(listSeries(source), Contains("a series of 2000000000 frames") && Contains("choose at most"));
+    CHECK_THROWS_AS(listSeries(source), FileError); // the file's fault, unless somebody has asked for so many
+    source.frames = FrameRange{0, 199999, 1};
+    CHECK_THROWS_AS(listSeries(source), UsageError);
     source.frames = FrameRange{1, 5, 2};
     const SeriesListing listing = listSeries(source);
     CHECK(lettersOf(listing) == "bdf");
