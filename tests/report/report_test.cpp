@@ -179,10 +179,10 @@ TEST_CASE("a report shows what its run began with and came to", "[report]") {
     SECTION("the SSIM is that of the pictures") {
         const TempFolder folder;
         std::vector<Image> images;
-        for (const ReportPicture* p : {&report.before, &report.after}) {
+        for (const ReportPicture* end : {&report.before, &report.after}) {
             const std::string file = folder.path("picture.png");
             std::ofstream(file, std::ios::binary)
-                .write(reinterpret_cast<const char*>(p->png.data()), static_cast<std::streamsize>(p->png.size()));
+                .write(reinterpret_cast<const char*>(end->png.data()), static_cast<std::streamsize>(end->png.size()));
             images.push_back(readImage(file));
         }
         // PNG has 8 bits: half a step of 1/255 in each pixel.
