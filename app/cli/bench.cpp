@@ -5,10 +5,13 @@
 #include "base/parallel.h"
 #include "bench/bench.h"
 #include "commands.h"
+#include "output_files.h"
 #include "parse.h"
 #include "render/memory_needs.h"
+#include "report/drawing_file.h"
 #include "resolve.h"
 #include "session/target_presets.h"
+#include "threads_plot.h"
 
 namespace pellucid::cli {
 
@@ -21,6 +24,7 @@ struct Options {
     bool full = false;
     RenderSettings picture;
     int orbit = 1;
+    std::optional<std::string> plot; ///< file of the curves over the number of threads
 
     bool onBuiltIn() const { return !scene.volume.path && !scene.sessionFile; }
     /// All where none are named; but slices only with a GPU at work, since a software rasterizer takes minutes.
@@ -53,6 +57,8 @@ void check(const Options& o) {
         throw UsageError("--full works with the built-in volumes only", "--full", "leave out --full or VOLUME");
     if (o.onBuiltIn() && o.scene.volume.anyDetail())
         throw UsageError("options for a volume are given, but no volume", "bench", "name a file or sample:NAME");
+    if (o.plot && !o.rows().contains(BenchRow::Threads))
+        throw UsageError("--plot draws the row threads, which --only leaves out", *o.plot, "add threads to --only");
 }
 
 std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b) {
@@ -64,7 +70,8 @@ std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b
 /// Measures, and tells what it found.
 class Run {
 public:
-    Run(const Options& options, std::vector<int> threads, Progress& progress)
+    /// `most`: threads that the user asks for.
+    Run(const Options& options, std::optional<int> most, Progress& progress)
         : m_options(options), m_rows(options.rows()), m_progress(progress) {
         SceneOptions scene = options.scene;
         if (options.onBuiltIn()) {
@@ -74,7 +81,8 @@ public:
         m_inputs = inputsOf(scene, kWork, m_results.notices);
         m_mainVolume = m_inputs.session.variable().source.path;
         m_mainTf = scene.tf.spec.value_or(scene.sessionFile ? "session" : "default");
-        m_bench.threads = std::move(threads);
+        m_bench.threads = most ? std::vector{*most} : std::vector{1, 2};
+        if (most) m_bench.searchThreads = searchThreadsUpTo(*most);
         m_bench.repeat = options.repeat;
         m_bench.engine = m_inputs.session.measure->engine;
         m_bench.quality = m_inputs.session.measure->quality;
@@ -86,6 +94,11 @@ public:
         const JobControl job = m_progress.phase("memcpy");
         requireMemory("copying", "memcpy", 2 * kMemcpyBytes);
         for (const int threads : m_bench.threads) m_memcpy.push_back(memcpyGbPerS(threads, job));
+    }
+    void draw() const {
+        if (m_options.plot)
+            writeDrawing([plot = threadsPlot(m_results.rows)](const PlotPage& page) { return drawingOf(plot, page); },
+                         {.width = 640, .height = 400}, *m_options.plot);
     }
     void givenVolume() {
         const Scene scene = openScene(m_inputs, m_progress.phase("loading"));
@@ -119,7 +132,18 @@ public:
         bench(cubes, m_bench, m_progress.phase("cubes"), m_results);
     }
 
-    Answer answer() const { return {textOfMemory() + "\n" + textOfRows() + textOfRatios(), json(), m_results.notices}; }
+    Answer answer() const {
+        Answer answer{textOfMemory() + "\n" + textOfRows() + textOfRatios(), json(), m_results.notices};
+        if (m_rows.contains(BenchRow::Threads))
+            if (const std::string shared = sharedProcessorsText(m_bench.searchThreads, processorCount());
+                !shared.empty())
+                answer.notices.push_back("rows threads: " + shared);
+        if (m_options.plot) {
+            answer.text += "wrote " + *m_options.plot + "\n";
+            answer.json["plot"] = *m_options.plot;
+        }
+        return answer;
+    }
 
 private:
     /// All rows under `tf` and, unless the user wants this one alone, some under two of other densities.
@@ -143,8 +167,17 @@ private:
                 bench({&each, 1}, m_bench, m_progress.phase(m_mainVolume + ", " + each.tfName), m_results);
     }
 
-    double memcpyOf(int threads) const {
+    /// The numbers of the thesis, as far as the user goes.
+    static std::vector<int> searchThreadsUpTo(int most) {
+        std::vector<int> threads;
+        for (int n = 1; n < most && n <= 8; n *= 2) threads.push_back(n);
+        threads.push_back(most);
+        return threads;
+    }
+
+    std::optional<double> memcpyOf(int threads) const {
         const auto at = std::find(m_bench.threads.begin(), m_bench.threads.end(), threads);
+        if (at == m_bench.threads.end()) return {};
         return m_memcpy[static_cast<std::size_t>(at - m_bench.threads.begin())];
     }
 
@@ -241,15 +274,16 @@ private:
             if (r.row == BenchRow::Sweep)
                 label += *r.candidates == 1 ? ", 1 TF" : ", " + std::to_string(*r.candidates) + " TFs";
             if (r.row == BenchRow::Jacobian) label += ", " + std::to_string(*r.features) + " features";
-            if (r.row == BenchRow::Optimize || r.row == BenchRow::OptimizeNewton)
+            if (r.row == BenchRow::Optimize || r.row == BenchRow::OptimizeNewton || r.row == BenchRow::Threads)
                 label += ", " + j["iterations"].dump() + " moves";
+            if (j.contains("speedup")) label += ", " + fixedText(j["speedup"], 2) + "x";
             if (r.row == BenchRow::OptimizeWhole) {
                 label += ", " + j["target"].get<std::string>();
                 if (j.contains("sweeps")) label += ", " + fixedText(j["sweeps"], 1) + " sweeps";
             }
             table.add({label, r.volume, r.tf.value_or(""), r.engine, std::to_string(r.threads), secondsText(r.seconds),
                        secondsText(r.cpuSeconds), fixedText(j["ns_per_voxel"], 2), fixedText(j["gb_per_s"], 2),
-                       fixedText(100 * j["memcpy_share"].get<double>(), 1) + " %"});
+                       j.contains("memcpy_share") ? fixedText(100 * j["memcpy_share"].get<double>(), 1) + " %" : "-"});
         }
         return table.text();
     }
@@ -290,12 +324,13 @@ private:
 
 Answer run(const Options& o, bool threadsGiven, Progress& progress) {
     check(o);
-    Run bench(o, threadsGiven ? std::vector{threadCount()} : std::vector{1, 2}, progress);
+    Run bench(o, threadsGiven ? std::optional(threadCount()) : std::nullopt, progress);
     bench.memory();
     if (o.onBuiltIn())
         bench.builtInVolumes();
     else
         bench.givenVolume();
+    bench.draw();
     return bench.answer();
 }
 
@@ -319,7 +354,7 @@ Command addBench(CLI::App& program) {
     o->scene.engine.add(*app);
     addValue(*app, "--only", "ROW,...", o->only, parseRows,
              "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
-             "optimize-newton, optimize-whole, refine, refine-500, refine-direct, render");
+             "optimize-newton, threads, optimize-whole, refine, refine-500, refine-1000, refine-direct, render");
     addValue(
         *app, "--repeat", "N", o->repeat, wholeFrom(1, 1000),
         "runs of each row after a first one that does not count; the median is reported (default: 3, and more for rows "
@@ -337,6 +372,9 @@ Command addBench(CLI::App& program) {
     app->add_flag("--shading", o->picture.light.on, "draw the row \"render\" with light from the eye");
     addValue(*app, "--orbit", "N", o->orbit, wholeFrom(1, 1000),
              "views from all around that the row \"render\" draws; --json lists the time of each (default 1)");
+    addOutputFile(*app, "--plot", o->plot,
+                  "draw the seconds of the row \"threads\" over the number of threads: .svg or .png",
+                  [](const std::string& path) { checkDrawingSuffix(path, "plots"); });
     app->add_flag("--full", o->full,
                   "also measure a cube of 512 voxels along each side, which takes some minutes and 2 GiB of memory");
     return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};

@@ -25,6 +25,7 @@ Command addGenerate(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);
 Command addFields(CLI::App& program);
+Command addPlot(CLI::App& program);
 Command addPropose(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
@@ -34,6 +35,7 @@ Command addSaliencyMap(CLI::App& program);
 Command addCompare(CLI::App& program);
 Command addProbe(CLI::App& program);
 Command addViews(CLI::App& program);
+Command addReproduce(CLI::App& program);
 Command addBench(CLI::App& program);
 
 } // namespace pellucid::cli

@@ -199,11 +199,11 @@ int run(const std::vector<std::string>& arguments) {
     program.footer("Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.\n"
                    "`pellucid-cli COMMAND --help` lists a command's options.");
 
-    const std::array commands{addInfo(program),     addSamples(program),  addPresets(program),     addGenerate(program),
-                              addRender(program),   addMeasure(program),  addFields(program),      addRefine(program),
-                              addOptimize(program), addSequence(program), addSpace(program),       addPropose(program),
-                              addProbe(program),    addViews(program),    addSaliencyMap(program), addCompare(program),
-                              addBench(program)};
+    const std::array commands{addInfo(program),     addSamples(program),   addPresets(program), addGenerate(program),
+                              addRender(program),   addMeasure(program),   addFields(program),  addRefine(program),
+                              addOptimize(program), addSequence(program),  addSpace(program),   addPlot(program),
+                              addPropose(program),  addProbe(program),     addViews(program),   addSaliencyMap(program),
+                              addCompare(program),  addReproduce(program), addBench(program)};
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);
 

@@ -9,6 +9,8 @@
 #include "prepare.h"
 #include "render/feature_pictures.h"
 #include "render/memory_needs.h"
+#include "report/drawing_file.h"
+#include "report/share_bars.h"
 #include "resolve.h"
 
 namespace pellucid::cli {
@@ -21,9 +23,12 @@ struct Options {
     bool pictured = false;               ///< --2dfs
     std::optional<ImageSize> size;       ///< of the picture
     std::optional<std::string> maps;     ///< folder of pictures and maps
+    std::optional<double> mapStrength;   ///< of maps as PNG; empty: there are none
+    std::optional<std::string> bars;     ///< file of bar charts
     std::vector<CLI::Option*> ofPicture; ///< options that say nothing without --2dfs
 
     void check() const {
+        refuse({{mapStrength && !maps, "there are no maps to write", "--map-strength", "add --maps DIR"}});
         if (pictured) return;
         const auto given =
             std::ranges::find_if(ofPicture, [](const CLI::Option* option) { return option->count() > 0; });
@@ -163,9 +168,15 @@ Json jsonOf(const Scene& scene, const Found& found) {
     return json;
 }
 
+/// As a picture: what is brighter than white is white.
+Plane strengthened(Plane plane, double strength) {
+    for (float& value : plane.values) value = std::clamp(static_cast<float>(strength) * value, 0.0f, 1.0f);
+    return plane;
+}
+
 /// The files of --maps, and what writes each (figs A.1 to A.5).
-std::vector<std::pair<std::string, std::function<void(const std::string&)>>> filesOf(const FeaturePictures& pictures,
-                                                                                     const FeatureSaliency& saliency) {
+std::vector<std::pair<std::string, std::function<void(const std::string&)>>>
+filesOf(const FeaturePictures& pictures, const FeatureSaliency& saliency, std::optional<double> strength) {
     std::vector<std::pair<std::string, std::function<void(const std::string&)>>> files;
     const auto picture = [&](const std::string& name, const Image& image) {
         files.emplace_back(name + ".png", [&image](const std::string& path) {
@@ -174,27 +185,30 @@ std::vector<std::pair<std::string, std::function<void(const std::string&)>>> fil
             writeImage(shown, path);
         });
     };
-    const auto map = [&](const std::string& name, const Plane& plane) {
-        files.emplace_back(name + ".exr", [&plane](const std::string& path) { writePlane(plane, path); });
+    const auto map = [&](const std::string& name, const std::function<Plane()>& plane) {
+        files.emplace_back(name + ".exr", [plane](const std::string& path) { writePlane(plane(), path); });
+        if (strength)
+            files.emplace_back(name + ".png",
+                               [=](const std::string& path) { writePlane(strengthened(plane(), *strength), path); });
     };
+    const auto kept = [&](const std::string& name, const Plane& plane) { map(name, [&plane] { return plane; }); };
     picture("picture", pictures.whole);
-    map("saliency", saliency.map);
-    map("rest", saliency.rest);
+    kept("saliency", saliency.map);
+    kept("rest", saliency.rest);
     for (std::size_t f = 0; f < saliency.shares.size(); ++f) {
         const std::string feature = "feature" + std::to_string(f + 1);
         picture(feature, pictures.alone[f]);
-        map(feature + "_shared", saliency.shared[f]);
-        map(feature + "_influence", saliency.influence[f]);
-        map(feature + "_rest", saliency.spread[f]);
-        files.emplace_back(feature + "_total.exr",
-                           [&saliency, f](const std::string& path) { writePlane(totalOf(saliency, f), path); });
+        kept(feature + "_shared", saliency.shared[f]);
+        kept(feature + "_influence", saliency.influence[f]);
+        kept(feature + "_rest", saliency.spread[f]);
+        map(feature + "_total", [&saliency, f] { return totalOf(saliency, f); });
     }
     return files;
 }
 
 std::vector<std::string> writeMaps(const std::string& folder, const FeaturePictures& pictures,
-                                   const FeatureSaliency& saliency) {
-    const auto files = filesOf(pictures, saliency);
+                                   const FeatureSaliency& saliency, std::optional<double> strength) {
+    const auto files = filesOf(pictures, saliency, strength);
     for (const auto& [name, write] : files) addOutputFile(folder, name, "--maps");
     const OutputFolder made(folder);
     std::vector<std::string> paths;
@@ -219,7 +233,7 @@ Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& 
     seconds.fs = looking.seconds();
     Pictured pictured{saliency.shares,           picture.settings.width, picture.settings.height,
                       picture.settings.light.on, renderer->name(),       {}};
-    if (o.maps) pictured.files = writeMaps(*o.maps, pictures, saliency);
+    if (o.maps) pictured.files = writeMaps(*o.maps, pictures, saliency, o.mapStrength);
     return pictured;
 }
 
@@ -248,7 +262,15 @@ Answer run(const Options& o, Progress& progress) {
     Json json = jsonOf(opened.scene, found);
     addProfile(json, input.settings);
     addMapping(json, opened.scene);
-    return {textOf(opened.scene, found, profileText(input.settings)), std::move(json), opened.notices()};
+    std::string text = textOf(opened.scene, found, profileText(input.settings));
+    if (o.bars) {
+        writeShareCharts(shareBarsOf(opened.scene.tf, found.measures.features,
+                                     found.pictured ? found.pictured->shares : std::vector<double>()),
+                         *o.bars);
+        text += "wrote " + *o.bars + "\n";
+        json["bars"] = *o.bars;
+    }
+    return {std::move(text), std::move(json), opened.notices()};
 }
 
 } // namespace
@@ -271,6 +293,13 @@ Command addMeasure(CLI::App& program) {
     addOutputFolder(*app, "--maps", o->maps,
                     "folder for the pictures of --2dfs (PNG) and its maps (EXR, floats): saliency, rest and, for each "
                     "feature, shared, influence, rest, total; made where missing");
+    addValue(*app, "--map-strength", "K", o->mapStrength, realAbove(0, 1e6),
+             "also write the maps of --maps as PNG, multiplied by K; white stands for 1 and more");
+    addOutputFile(
+        *app, "--bars", o->bars,
+        "write visibility and VWS, also of brightness and of saturation alone, as bar charts in the features' "
+        "colours: .svg or .png",
+        [](const std::string& path) { checkDrawingSuffix(path, "bars"); });
     const std::vector<CLI::Option*> others = app->get_options();
     o->scene.picture.addLook(*app);
     o->scene.ground.add(*app);

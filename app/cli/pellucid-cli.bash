@@ -36,7 +36,7 @@ _pellucid_cli() {
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
-            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton optimize-whole refine refine-500 refine-direct render"
+            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton threads optimize-whole refine refine-500 refine-1000 refine-direct render"
             ;;
         --slice) choices="x: y: z:" ;;
         --target) choices="equal diagonal inside-out only:" ;;
@@ -51,7 +51,7 @@ _pellucid_cli() {
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv | --report | --curves | --mp4)
+        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv | --report | --curves | --bars | --plot | --mp4)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
@@ -71,6 +71,9 @@ _pellucid_cli() {
         COMPREPLY=($(compgen -W "$choices" -- "$current"))
     elif [[ $current == -* ]]; then
         choices=$("$program" "$command" --help 2>/dev/null | grep -oE -- '--[a-z][a-z0-9-]*' | sort -u)
+        COMPREPLY=($(compgen -W "$choices" -- "$current"))
+    elif [[ $command == reproduce ]]; then
+        choices=$("$program" reproduce --list 2>/dev/null | sed 's/  .*//')
         COMPREPLY=($(compgen -W "$choices" -- "$current"))
     elif [[ $command == generate ]]; then
         choices=$("$program" samples 2>/dev/null | sed -n 's/^sample:\([^ ]*\) .*/\1/p')

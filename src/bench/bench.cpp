@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <numbers>
+#include <thread>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -24,7 +25,7 @@ constexpr double kBytesPerCode = 2; ///< what engines and renderers read of a vo
 constexpr double kDensePeak = 0.001;
 constexpr double kDenseStepScale = 0.002; ///< steps in proportion to kDensePeak
 constexpr double kSparseShare = 0.03;
-constexpr int kClickIterations = 500; ///< as in table 3.2 of the thesis
+constexpr int kClickIterations = 500, kMoreIterations = 1000; ///< as in table 3.2 of the thesis
 /// Without a number of repetitions: rounds over all rows, and how long each row at least repeats in every round.
 /// Seconds; what else a machine does comes and goes in tenths of them.
 constexpr int kRounds = 3;
@@ -103,7 +104,7 @@ public:
         const auto wanted = [&](BenchRow row) { return of.rows.contains(row); };
         const bool measured =
             wanted(Sweep) || wanted(Jacobian) || wanted(Optimize) || wanted(OptimizeNewton) || wanted(OptimizeWhole);
-        const bool weighted = measured || wanted(Slices);
+        const bool weighted = measured || wanted(Slices) || wanted(Threads);
         if (measured || wanted(Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
         if (wanted(Setup)) addSetup();
         if (wanted(Saliency)) addSaliency(Saliency, updateSaliencyFields);
@@ -114,10 +115,12 @@ public:
         if (wanted(Jacobian)) addJacobians(job);
         if (wanted(Optimize)) addOptimize();
         if (wanted(OptimizeNewton)) addNewton(job);
+        if (wanted(Threads)) addThreads();
         if (wanted(OptimizeWhole)) addWhole();
         if (wanted(Refine)) addRefine();
-        if (wanted(Refine500)) addPaletteClick(Refine500, refine);
-        if (wanted(RefineDirect)) addPaletteClick(RefineDirect, refineReference);
+        if (wanted(Refine500)) addPaletteClick(Refine500, refine, kClickIterations);
+        if (wanted(Refine1000)) addPaletteClick(Refine1000, refine, kMoreIterations);
+        if (wanted(RefineDirect)) addPaletteClick(RefineDirect, refineReference, kClickIterations);
         if (wanted(Render)) addRender();
     }
     CaseBench(const CaseBench&) = delete; // the measurements refer to it
@@ -136,11 +139,15 @@ private:
              int times = 1) {
         for (const int threads : m_options.threads) {
             if ((result.engine == "gl" || result.engine == "slices") && threads != m_options.threads.back()) continue;
-            Measurement m{result, work, times, {}, {}, false};
-            m.result.threads = threads;
-            m.result.bytes = bytes;
-            m_measurements.push_back(std::move(m));
+            addWith(threads, result, bytes, work, times);
         }
+    }
+    void addWith(int threads, const BenchResult& result, double bytes,
+                 const std::function<void(BenchResult&, const JobControl&)>& work, int times = 1) {
+        Measurement m{result, work, times, {}, {}, false};
+        m.result.threads = threads;
+        m.result.bytes = bytes;
+        m_measurements.push_back(std::move(m));
     }
 
     BenchResult row(BenchRow row, const std::string& engine, int candidates, const TransferFunction& tf,
@@ -218,19 +225,29 @@ private:
     /// The search alone: engine and weights are there.
     void addOptimize() {
         if (m_case.tf.features.empty()) return;
-        add(row(BenchRow::Optimize, m_engine->name(), 8), 0, [this](BenchResult& r, const JobControl& j) {
-            const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
-            OptimizeOptions search;
-            search.method = SearchMethod::Parallel;
-            const OptimizeResult found = resultOf({function, benchTargets(m_case.tf.features.size())}, search, j);
-            const int sweeps = 1 + (found.evaluations - 1) / 8; // the start, then eight at a time
-            r.bytes = sweeps * sweepBytes();
-            r.extra = {{"iterations", found.iterations()},
-                       {"evaluations", found.evaluations},
-                       {"sweeps", sweeps},
-                       {"objective", found.history[found.best].objective},
-                       {"converged", found.converged()}};
-        });
+        add(row(BenchRow::Optimize, m_engine->name(), 8), 0,
+            [this](BenchResult& r, const JobControl& j) { search(*m_engine, r, j); });
+    }
+    /// The same with ever more threads, which OpenGL would not use.
+    void addThreads() {
+        if (m_case.tf.features.empty()) return;
+        m_threaded = makeEngine(EngineChoice::Cpu, m_case.volume, m_options.quality);
+        for (const int threads : m_options.searchThreads)
+            addWith(threads, row(BenchRow::Threads, m_threaded->name(), 8), 0,
+                    [this](BenchResult& r, const JobControl& j) { search(*m_threaded, r, j); });
+    }
+    void search(VisibilityEngine& engine, BenchResult& r, const JobControl& job) const {
+        const EngineVws function(engine, m_case.view, m_case.tf, m_weights);
+        OptimizeOptions options;
+        options.method = SearchMethod::Parallel;
+        const OptimizeResult found = resultOf({function, benchTargets(m_case.tf.features.size())}, options, job);
+        const int sweeps = 1 + (found.evaluations - 1) / 8; // the start, then eight at a time
+        r.bytes = sweeps * sweepBytes();
+        r.extra = {{"iterations", found.iterations()},
+                   {"evaluations", found.evaluations},
+                   {"sweeps", sweeps},
+                   {"objective", found.history[found.best].objective},
+                   {"converged", found.converged()}};
     }
 
     VwsEstimates estimatesAnew(const JobControl& job) const {
@@ -303,13 +320,13 @@ private:
     }
 
     /// What follows a click on the palette: the histogram is there, an intensity is prioritized.
-    void addPaletteClick(BenchRow which, decltype(refine)* by) {
+    void addPaletteClick(BenchRow which, decltype(refine)* by, int iterations) {
         if (!m_histogram) m_histogram = makeHistogram(*m_case.volume);
-        add(row(which, "cpu"), 0, [this, by](BenchResult& r, const JobControl& j) {
+        add(row(which, "cpu"), 0, [this, by, iterations](BenchResult& r, const JobControl& j) {
             RefineOptions options;
             options.priority.intensity = 0.25;
             options.untilStable = false;
-            options.maxIterations = kClickIterations;
+            options.maxIterations = iterations;
             const RefineResult refined = by(*m_histogram, m_case.tf, options, j);
             r.extra = {{"iterations", refined.iterations}, {"energy", refined.energyMovableAfter}};
         });
@@ -344,8 +361,9 @@ private:
 
     const BenchCase& m_case;
     const BenchOptions& m_options;
-    std::unique_ptr<VisibilityEngine> m_engine; ///< null where no row needs one
-    std::unique_ptr<VisibilityEngine> m_slices; ///< made when first needed
+    std::unique_ptr<VisibilityEngine> m_engine;   ///< null where no row needs one
+    std::unique_ptr<VisibilityEngine> m_slices;   ///< made when first needed
+    std::unique_ptr<VisibilityEngine> m_threaded; ///< of the rows Threads
     std::optional<Histogram> m_histogram;
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
@@ -378,7 +396,34 @@ void measure(Measurement& m, double least, bool counts, const JobControl& job, s
     } while (!m.failed && all.seconds() < least);
 }
 
+/// How many times as fast as with one thread, to the rows Threads.
+void addSpeedups(std::span<BenchResult> rows) {
+    for (BenchResult& r : rows) {
+        if (r.row != BenchRow::Threads) continue;
+        const auto alone = std::find_if(rows.begin(), rows.end(), [&](const BenchResult& other) {
+            return other.row == r.row && other.volume == r.volume && other.tf == r.tf && other.threads == 1;
+        });
+        if (alone != rows.end() && r.seconds > 0) r.extra["speedup"] = alone->seconds / r.seconds;
+        r.extra["processors"] = processorCount();
+    }
+}
+
 } // namespace
+
+int processorCount() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+std::string sharedProcessorsText(std::span<const int> threads, int processors) {
+    std::string more;
+    int last = 0;
+    for (const int count : threads) {
+        if (count <= processors) continue;
+        if (last > 0) more += (more.empty() ? "" : ", ") + std::to_string(last);
+        last = count;
+    }
+    if (last == 0) return {};
+    return (more.empty() ? "" : more + " and ") + std::to_string(last) + " threads share " +
+           std::to_string(processors) + (processors == 1 ? " processor" : " processors");
+}
 
 TransferFunction denseTf() {
     TransferFunction tf;
@@ -445,7 +490,7 @@ std::shared_ptr<const Volume> tiled(const Volume& block, int n) {
     return std::make_shared<const Volume>(Volume(geometry, std::move(samples)).withRange(block.range()));
 }
 
-nlohmann::ordered_json jsonFromBenchResult(const BenchResult& r, double memcpyGbPerS) {
+nlohmann::ordered_json jsonFromBenchResult(const BenchResult& r, std::optional<double> memcpyGbPerS) {
     const auto voxels = static_cast<double>(voxelCount(r.dims));
     nlohmann::ordered_json j{{"name", name(r.row)}, {"engine", r.engine}, {"volume", r.volume}};
     if (r.tf) j["tf"] = *r.tf;
@@ -460,7 +505,7 @@ nlohmann::ordered_json jsonFromBenchResult(const BenchResult& r, double memcpyGb
     j["ns_per_voxel"] = 1e9 * r.seconds / voxels;
     j["gb_per_s"] = r.bytes / seconds / 1e9;
     j["bytes_per_voxel"] = r.bytes / voxels;
-    j["memcpy_share"] = r.bytes / seconds / 1e9 / memcpyGbPerS;
+    if (memcpyGbPerS) j["memcpy_share"] = r.bytes / seconds / 1e9 / *memcpyGbPerS;
     j.update(r.extra);
     return j;
 }
@@ -468,16 +513,21 @@ nlohmann::ordered_json jsonFromBenchResult(const BenchResult& r, double memcpyGb
 void bench(std::span<const BenchCase> cases, const BenchOptions& options, const JobControl& job,
            BenchResults& results) {
     const JobControl quiet{job.stop, {}}; // reports would cost time
+    std::set<int> counts(options.threads.begin(), options.threads.end());
     setThreadCount(options.threads.back());
     std::deque<CaseBench> benches; // does not move them
     std::size_t rows = 0;
-    for (const BenchCase& each : cases) rows += benches.emplace_back(each, options, quiet).measurements().size();
+    for (const BenchCase& each : cases) {
+        rows += benches.emplace_back(each, options, quiet).measurements().size();
+        if (each.rows.contains(BenchRow::Threads))
+            counts.insert(options.searchThreads.begin(), options.searchThreads.end());
+    }
 
     const int rounds = options.repeat.value_or(kRounds);
     const double all = static_cast<double>(rows) * (rounds + 1);
     double done = 0;
     // One number of threads after the other: a core that has been idle takes its time to run at full speed.
-    for (const int threads : options.threads) {
+    for (const int threads : counts) {
         setThreadCount(threads);
         for (int round = 0; round <= rounds; ++round) // the first warms up
             for (CaseBench& bench : benches)
@@ -496,6 +546,7 @@ void bench(std::span<const BenchCase> cases, const BenchOptions& options, const 
             m.result.cpuSeconds = median(m.cpuSeconds);
             results.rows.push_back(std::move(m.result));
         }
+    addSpeedups(std::span(results.rows).subspan(first));
     // An optimization in sweeps of eight: a ratio of processor times, which hardly change where others use the machine.
     const auto sweepOf = [&](const BenchResult& whole) {
         return std::find_if(results.rows.begin(), results.rows.end(), [&](const BenchResult& r) {

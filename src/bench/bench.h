@@ -29,16 +29,19 @@ enum class BenchRow {
     Jacobian,
     Optimize,       ///< by parallel line search
     OptimizeNewton, ///< the same targets
+    Threads,        ///< Optimize by the cpu engine with each of BenchOptions::searchThreads (thesis fig. 5.11)
     OptimizeWhole,  ///< all that an optimization does from saliency on, per BenchCase::targets
     Refine,
     Refine500,
+    Refine1000,
     RefineDirect,
     Render
 };
 template <>
 inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices",
-                                                     "jacobian", "optimize", "optimize-newton", "optimize-whole",
-                                                     "refine", "refine-500", "refine-direct", "render");
+                                                     "jacobian", "optimize", "optimize-newton", "threads",
+                                                     "optimize-whole", "refine", "refine-500", "refine-1000", "refine-direct",
+                                                     "render");
 
 /// One line of the table.
 struct BenchResult {
@@ -55,8 +58,8 @@ struct BenchResult {
     nlohmann::ordered_json extra; ///< further fields of this row, an object
 };
 
-/// A row as `bench --json` prints it, keys in that order. `memcpyGbPerS` is that of as many threads.
-nlohmann::ordered_json jsonFromBenchResult(const BenchResult& result, double memcpyGbPerS);
+/// A row as `bench --json` prints it, keys in that order. `memcpyGbPerS` is that of as many threads, where it is known.
+nlohmann::ordered_json jsonFromBenchResult(const BenchResult& result, std::optional<double> memcpyGbPerS);
 
 /// A volume under a transfer function, and what is to be measured of them.
 struct BenchCase {
@@ -90,7 +93,8 @@ TransferFunction sparseTf(const Volume& volume);
 std::shared_ptr<const Volume> tiled(const Volume& block, int n);
 
 struct BenchOptions {
-    std::vector<int> threads;  ///< ascending
+    std::vector<int> threads;                   ///< ascending
+    std::vector<int> searchThreads{1, 2, 4, 8}; ///< of the rows Threads: ascending, from 1 on
     std::optional<int> repeat; ///< runs of each row after a warm-up; else as many as tell enough, 3 at least
     EngineChoice engine = EngineChoice::Auto;
     Quality quality = Quality::Normal;
@@ -102,6 +106,11 @@ struct BenchResults {
     std::vector<BenchResult> rows;
     std::vector<std::string> notices; ///< about rows that could not be measured
 };
+
+/// Processors that threads can run on at once here.
+int processorCount();
+/// Which of `threads` there are more of than processors, in a sentence; empty where there are none.
+std::string sharedProcessorsText(std::span<const int> threads, int processors);
 
 /// Appends the rows of `cases`. Their repetitions with as many threads alternate, so that a machine that changes its
 /// speed changes that of all of them, and their ratios hold.

@@ -7,32 +7,15 @@
 
 #include "report/convergence.h"
 #include "report/csv.h"
+#include "report/page_style.h"
 #include "report/share_bars.h"
 #include "report/svg_plot.h"
+#include "report/tf_plot.h"
 #include "session/session.h"
 
 namespace pellucid {
 
 namespace {
-
-constexpr const char* kStyle = R"(
-:root{color-scheme:light dark;--text:#1b1d20;--faint:#585c62;--line:#cfd2d7;--ground:#fff;--raised:#f4f5f7}
-@media screen and (prefers-color-scheme:dark){:root{--text:#e4e5e7;--faint:#9a9da3;--line:#45474b;--ground:#1c1d1f;--raised:#262729}}
-body{margin:0 auto;padding:1.5rem;max-width:68rem;background:var(--ground);color:var(--text);font:15px/1.5 system-ui,sans-serif}
-h1{font-size:1.6rem;margin:0}h2{font-size:1.2rem;margin:2.2rem 0 .6rem}
-p.said{font-size:1.05rem}p.faint,figcaption,small{color:var(--faint)}
-.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(20rem,1fr));gap:1.2rem}
-.states{display:grid;grid-template-columns:repeat(auto-fill,minmax(9rem,1fr));gap:.8rem}
-figure{margin:0;break-inside:avoid}img,svg{max-width:100%;height:auto;display:block}
-.states img{width:100%}.states .answer figcaption{color:var(--text);font-weight:bold}
-table{border-collapse:collapse;width:100%}.wide{overflow-x:auto}
-th,td{text-align:right;padding:.25rem .6rem;border-bottom:1px solid var(--line);font-variant-numeric:tabular-nums}
-th:first-child,td:first-child{text-align:left}table.settings td{text-align:left}
-.swatch{display:inline-block;width:.8em;height:.8em;border:1px solid var(--faint);margin-right:.5em;print-color-adjust:exact;-webkit-print-color-adjust:exact}
-pre{background:var(--raised);border:1px solid var(--line);padding:.8rem;white-space:pre-wrap;overflow-wrap:anywhere}
-a{color:inherit}
-@media print{body{max-width:none;padding:0;font-size:10pt}h2{break-after:avoid}}
-)";
 
 std::string dataUri(const char* type, std::span<const unsigned char> bytes) {
     return std::string("data:") + type + ";base64," + base64(bytes);
@@ -61,31 +44,6 @@ std::vector<ShareBar> barsOf(const Report& report, const OptimizeState& state,
         bars.push_back(bar);
     }
     return bars;
-}
-
-/// Opacity over the values, each feature in its colour.
-Plot tfPlot(const Report& report, const TransferFunction& tf, double most) {
-    // Where all values are one the axis has a width all the same.
-    const double lo = report.window.lo, wide = report.window.hi > lo ? report.window.hi - lo : 1;
-    const auto value = [&](double x) { return lo + x * wide; };
-    Plot plot{
-        .title = "Transfer function",
-        .x = {.label = report.unit.empty() ? "value" : "value (" + report.unit + ")", .lo = value(0), .hi = value(1)},
-        .y = {.label = "opacity per d0", .hi = most},
-        .series = {}};
-    PlotSeries all;
-    for (const ControlPoint& p : tf.pointsWithEnds()) all.points.push_back({value(p.x), p.opacity});
-    plot.series.push_back(all);
-    for (const Feature& f : tf.features) {
-        PlotSeries series{.name = f.name, .color = f.color, .points = {{value(f.a), tf.opacity(f.a)}}};
-        for (const ControlPoint& p : tf.points)
-            if (f.contains(p.x)) series.points.push_back({value(p.x), p.opacity});
-        // Its end belongs to what follows.
-        const double end = f.b < 1 ? std::nextafter(f.b, 0.0) : 1;
-        series.points.push_back({value(end), tf.opacity(end)});
-        plot.series.push_back(series);
-    }
-    return plot;
 }
 
 /// SSIM over the moves, and where §5.4 says that it should lie.
@@ -172,7 +130,7 @@ std::string beforeAndAfter(const Report& report) {
                           const OptimizeState& state, const std::vector<FeatureMeasures>& measures) {
         const PlotPage page{.width = 480};
         return "<div><h3>" + std::string(title) + "</h3><figure>" + imageOf(picture, title) + "</figure>\n" +
-               svgOfPlot(tfPlot(report, tf, mostOpacity), 480, 220) + "<figure>" +
+               svgOfPlot(tfPlot(tf, {report.window, report.unit, nullptr, mostOpacity}), 480, 220) + "<figure>" +
                svgElement(drawingOf(barsOf(report, state, measures), mostShare, page), "Shares of the features") +
                "</figure></div>\n";
     };
@@ -220,11 +178,7 @@ std::string base64(std::span<const unsigned char> bytes) {
 std::string htmlOf(const Report& report) {
     const Run& run = report.run;
     const std::string title = report.title + ": saliency optimization";
-    std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-                       escapedXml(title) + "</title>\n<style>" + kStyle + plotStyle() +
-                       "</style>\n</head>\n<body>\n<h1>" + escapedXml(title) + "</h1>\n<p class=\"said\">" +
-                       headline(run) + "</p>\n";
+    std::string html = "<h1>" + escapedXml(title) + "</h1>\n<p class=\"said\">" + headline(run) + "</p>\n";
     for (const std::string& remark : report.remarks) html += "<p>" + escapedXml(remark) + "</p>\n";
     html += "<h2>Before and after</h2>\n" + beforeAndAfter(report) + featureTable(report);
 
@@ -250,8 +204,8 @@ std::string htmlOf(const Report& report) {
     html += "</table>\n<h2>To repeat it</h2>\n";
     if (report.session) html += "<p>In the folder of this page:</p>\n";
     html += "<pre><code>" + escapedXml(report.command) + "</code></pre>\n<p class=\"faint\">" +
-            escapedXml(report.program) + "</p>\n</body>\n</html>\n";
-    return html;
+            escapedXml(report.program) + "</p>\n";
+    return htmlPage(title, plotStyle(), html);
 }
 
 } // namespace pellucid

@@ -98,11 +98,20 @@ private:
 
 } // namespace
 
-Image imageOf(std::span<const Plot> plots, const PlotPage& page, double scale) {
-    PlotPage own = page; // letters are as wide as they are drawn here
+PlotPage imagePage(const PlotPage& page) {
+    PlotPage own = page;
     own.textWidth = [size = page.fontSize](const std::string& text) { return textWidth(text) * kCapital * size; };
+    return own;
+}
+
+Image imageOf(std::span<const PlotDrawing> drawings, double scale) {
+    double width = 0, height = 0;
+    for (const PlotDrawing& drawing : drawings) {
+        width = std::max(width, drawing.width);
+        height += drawing.height;
+    }
     const auto pixels = [&](double length) { return static_cast<int>(std::lround(scale * length)); };
-    Image image(pixels(page.width), pixels(page.height * static_cast<double>(plots.size())));
+    Image image(pixels(width), pixels(height));
     const Rgb ground = inkOnLight(PlotInk::Ground);
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         image.rgba[i] = static_cast<float>(ground.r);
@@ -110,16 +119,24 @@ Image imageOf(std::span<const Plot> plots, const PlotPage& page, double scale) {
         image.rgba[i + 2] = static_cast<float>(ground.b);
         image.rgba[i + 3] = 1;
     }
-    for (std::size_t i = 0; i < plots.size(); ++i) {
-        const PlotDrawing drawing = drawingOf(plots[i], own);
-        Painter painter(scale, page.height * static_cast<double>(i));
+    double top = 0;
+    for (const PlotDrawing& drawing : drawings) {
+        Painter painter(scale, top);
         for (const PlotArea& a : drawing.areas) painter.add(a);
         for (const PlotStroke& s : drawing.strokes) painter.add(s);
         for (const PlotDot& d : drawing.dots) painter.add(d);
         for (const PlotText& t : drawing.texts) painter.add(t);
         drawMarks(image, painter.marks());
+        top += drawing.height;
     }
     return image;
+}
+
+Image imageOf(std::span<const Plot> plots, const PlotPage& page, double scale) {
+    const PlotPage own = imagePage(page);
+    std::vector<PlotDrawing> drawings;
+    for (const Plot& plot : plots) drawings.push_back(drawingOf(plot, own));
+    return imageOf(drawings, scale);
 }
 
 } // namespace pellucid

@@ -39,11 +39,20 @@ struct PlotBand {
     bool operator==(const PlotBand&) const = default;
 };
 
+/// An area that stands on the x axis.
+struct PlotBar {
+    double from = 0, to = 0;       ///< values of x
+    double height = 0;             ///< a value of y
+    std::optional<Rgb> color = {}; ///< empty: a shade
+    bool operator==(const PlotBar&) const = default;
+};
+
 struct Plot {
     std::string title;
     PlotAxis x, y;
     std::vector<PlotSeries> series;
     std::vector<PlotBand> bands = {};
+    std::vector<PlotBar> bars = {}; ///< below the curves
     bool operator==(const Plot&) const = default;
 };
 

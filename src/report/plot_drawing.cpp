@@ -126,6 +126,14 @@ void addBands(PlotDrawing& drawing, const Plot& plot, const PlotPage& page, cons
     }
 }
 
+void addBars(PlotDrawing& drawing, const Plot& plot, const PlotBox& box) {
+    for (const PlotBar& bar : plot.bars)
+        drawing.areas.push_back({{box.xOf(bar.from), box.yOf(bar.height)},
+                                 {box.xOf(bar.to), box.bottom},
+                                 bar.color ? PlotInk::Own : PlotInk::Shade,
+                                 bar.color.value_or(Rgb{})});
+}
+
 void addAxes(PlotDrawing& drawing, const Plot& plot, const PlotPage& page, const PlotBox& box) {
     const double size = page.fontSize;
     const auto write = [&](const Vec2& at, const std::string& text, Anchor anchor) -> PlotText& {
@@ -223,6 +231,7 @@ PlotDrawing drawingOf(const Plot& plot, const PlotPage& page) {
         .width = page.width, .height = page.height, .areas = {}, .strokes = {}, .dots = {}, .texts = {}};
     addTitleAndLegend(drawing, plot, page, box);
     addBands(drawing, plot, page, box);
+    addBars(drawing, plot, box);
     addAxes(drawing, plot, page, box);
     // Dashed lines, which are what curves are compared with, lie below these.
     for (const bool dashed : {true, false})

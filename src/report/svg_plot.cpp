@@ -146,17 +146,25 @@ std::string svgElement(const PlotDrawing& drawing, const std::string& label) {
            "</svg>\n";
 }
 
+std::string svgOf(std::span<const PlotDrawing> drawings) {
+    double wide = 0, high = 0;
+    std::string groups;
+    for (const PlotDrawing& drawing : drawings) {
+        groups += "<g transform=\"translate(0 " + number(high) + ")\">\n" + elementsOf(drawing) + "</g>\n";
+        wide = std::max(wide, drawing.width);
+        high += drawing.height;
+    }
+    const std::string width = number(wide), height = number(high);
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " +
+           width + " " + height + "\" width=\"" + width + "\" height=\"" + height + "\" " + kFont + ">\n<style>" +
+           plotStyle() + "</style>\n<rect width=\"" + width + "\" height=\"" + height + "\" " +
+           painted("fill", PlotInk::Ground, {}) + "/>\n" + groups + "</svg>\n";
+}
+
 std::string svgOf(std::span<const Plot> plots, const PlotPage& page) {
-    const std::string width = number(page.width), height = number(page.height * static_cast<double>(plots.size()));
-    std::string svg =
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width +
-        " " + height + "\" width=\"" + width + "\" height=\"" + height + "\" " + kFont + ">\n<style>" + plotStyle() +
-        "</style>\n<rect width=\"" + width + "\" height=\"" + height + "\" " + painted("fill", PlotInk::Ground, {}) +
-        "/>\n";
-    for (std::size_t i = 0; i < plots.size(); ++i)
-        svg += "<g transform=\"translate(0 " + number(page.height * static_cast<double>(i)) + ")\">\n" +
-               elementsOf(drawingOf(plots[i], page)) + "</g>\n";
-    return svg + "</svg>\n";
+    std::vector<PlotDrawing> drawings;
+    for (const Plot& plot : plots) drawings.push_back(drawingOf(plot, page));
+    return svgOf(drawings);
 }
 
 } // namespace pellucid

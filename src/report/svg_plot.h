@@ -22,7 +22,9 @@ std::string plotStyle();
 /// One `<svg>` element, without a style of its own: for pages that have plotStyle(). `label` is read out in its place.
 std::string svgElement(const PlotDrawing& drawing, const std::string& label);
 
-/// A file: plots below each other, each of `page`, on a ground.
+/// A file: drawings below each other, on a ground.
+std::string svgOf(std::span<const PlotDrawing> drawings);
+/// The same of plots, each of `page`.
 std::string svgOf(std::span<const Plot> plots, const PlotPage& page = {});
 
 } // namespace pellucid

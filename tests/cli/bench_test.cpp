@@ -1,5 +1,6 @@
 // `bench`: which rows there are, and that their figures agree with each other and with the other commands. How long
 // anything takes is not asserted.
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -49,18 +50,20 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         CHECK(row["dims"] == json({24, 24, 24}));
         CHECK(row["runs"] == 1);
         const int threads = row["threads"];
-        REQUIRE((threads == 1 || threads == 2));
+        REQUIRE((threads == 1 || threads == 2 || row["name"] == "threads"));
         const double seconds = row["seconds"], bytes = row["bytes_per_voxel"], rate = row["gb_per_s"];
         CHECK(seconds > 0);
         CHECK(row["cpu_seconds"].get<double>() > 0);
         CHECK(row["ns_per_voxel"].get<double>() == Approx(1e9 * seconds / kVoxels));
         CHECK(rate == Approx(bytes * kVoxels / seconds / 1e9));
+        CHECK(row.contains("memcpy_share") == (threads <= 2));
+        if (threads > 2) continue;
         const double memcpyRate = j["memcpy"][static_cast<std::size_t>(threads - 1)]["gb_per_s"];
         CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
     }
     CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
-                                         "optimize-newton", "optimize-whole", "refine", "refine-500", "refine-direct",
-                                         "render"});
+                                         "optimize-newton", "threads", "optimize-whole", "refine", "refine-500", "refine-1000",
+                                         "refine-direct", "render"});
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
     const auto sweeps = rowsNamed(j, "sweep");
@@ -109,14 +112,51 @@ TEST_CASE("bench optimizes and refines as the commands of that name do", "[cli][
     CHECK(j["rows"][1]["iterations"] == refined["iterations"]);
 }
 
+TEST_CASE("bench searches with more and more threads, and finds the same", "[cli][bench]") {
+    const Workshop w;
+    const json j = bench(w, {"--only", "optimize,threads", "--tf", "tents:3:0.2", "--plot", "t.svg"});
+    CHECK(j["plot"] == "t.svg");
+    const auto rows = rowsNamed(j, "threads");
+    REQUIRE(rows.size() == 4);
+    const std::array<int, 4> numbers{1, 2, 4, 8};
+    const double alone = rows[0]["seconds"];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const json& row = rows[i];
+        INFO(row.dump());
+        CHECK(row["threads"] == numbers[i]);
+        CHECK(row["speedup"].get<double>() == Approx(alone / row["seconds"].get<double>()));
+        CHECK(row["processors"].get<int>() >= 1);
+        // The very search of the row optimize, whatever the number of threads.
+        for (const char* key : {"iterations", "evaluations", "sweeps", "objective", "converged", "bytes_per_voxel"})
+            CHECK(row[key] == rowsNamed(j, "optimize")[0][key]);
+    }
+    // A curve with a dot per number of threads, in the colour of first curves.
+    const std::string svg = w.read("t.svg");
+    CHECK(svg.find("sample:shells, tents:3:0.2") != std::string::npos);
+    std::size_t dots = 0;
+    for (std::size_t at = 0; (at = svg.find("<circle", at)) != std::string::npos; ++at) ++dots;
+    CHECK(dots == 4);
+
+    // As far as the user goes.
+    const auto three = rowsNamed(bench(w, {"--only", "threads", "--threads", "3"}), "threads");
+    REQUIRE(three.size() == 3);
+    CHECK(three[2]["threads"] == 3);
+
+    const Outcome useless = w.run({"bench", "sample:shells", "--only", "sweep", "--plot", "t.png"});
+    CHECK(useless.status == 2);
+    CHECK(useless.err.find("add threads to --only") != std::string::npos);
+    CHECK(w.run({"bench", "sample:shells", "--plot", "t.txt"}).status == 2);
+}
+
 TEST_CASE("bench refines after a click 500 times, fast and by integrating every edge anew", "[cli][bench]") {
     const Workshop w;
-    const json j = bench(w, {"--only", "refine-500,refine-direct,render", "--tf", "tents:3", "--threads", "2"});
-    REQUIRE(j["rows"].size() == 3);
-    const json &fast = j["rows"][0], &direct = j["rows"][1], &render = j["rows"][2];
+    const json j = bench(w, {"--only", "refine-500,refine-1000,refine-direct,render", "--tf", "tents:3", "--threads", "2"});
+    REQUIRE(j["rows"].size() == 4);
+    const json &fast = j["rows"][0], &longer = j["rows"][1], &direct = j["rows"][2], &render = j["rows"][3];
     CHECK(fast["name"] == "refine-500");
     CHECK(direct["name"] == "refine-direct");
     CHECK(fast["iterations"] == 500);
+    CHECK(longer["iterations"] == 1000);
     CHECK(direct["iterations"] == 500);
     CHECK(fast["energy"] == direct["energy"]); // the same answer
     const double seconds = fast["seconds"];

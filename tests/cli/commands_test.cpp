@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/round_numbers.h"
 #include "cli_runner.h"
 #include "image_io/image_file.h"
 #include "volume/loader.h"
@@ -172,6 +173,33 @@ TEST_CASE("measure prints figures that agree with each other", "[cli]") {
     CHECK(text.status == 0);
     CHECK(text.err.empty());
     for (const char* word : {"f1", "f2", "f3", "VWS", "engine cpu"}) CHECK(text.out.find(word) != std::string::npos);
+}
+
+TEST_CASE("measure draws its figures as bar charts", "[cli]") {
+    const Workshop w;
+    const json j = w.json({"measure", "sample:shells", "--size", "24", "--tf", "tents:2", "--bars", "b.svg"});
+    CHECK(j["bars"] == "b.svg");
+    const std::string svg = w.read("b.svg");
+    for (const json& feature : j["features"]) {
+        CHECK(svg.find(">" + feature["name"].get<std::string>() + "</text>") != std::string::npos);
+        for (const char* key : {"visibility", "vws", "vws_brightness", "vws_saturation"}) {
+            INFO(feature["name"] << " " << key);
+            CHECK(svg.find(">" + fixedText(feature[key], 4) + "</text>") != std::string::npos);
+        }
+    }
+    // tents:2 have the hues of 90 and 270 degrees.
+    CHECK(svg.find("fill=\"#80ff00\"") != std::string::npos);
+    CHECK(svg.find("fill=\"#8000ff\"") != std::string::npos);
+    CHECK(svg.find("2D feature saliency") == std::string::npos);
+
+    const Outcome pictured = w.run({"measure", "sample:shells", "--sample-size", "16", "--tf", "tents:2", "--2dfs",
+                                    "--size", "32x32", "--bars", "b.svg"});
+    CHECK(pictured.status == 0);
+    CHECK(pictured.out.find("wrote b.svg\n") != std::string::npos);
+    CHECK(w.read("b.svg").find("2D feature saliency") != std::string::npos);
+    const Outcome wrong = w.run({"measure", "sample:shells", "--bars", "b.csv"});
+    CHECK(wrong.status == 2);
+    CHECK(wrong.err.find("bars are written as .svg or .png, b.csv") != std::string::npos);
 }
 
 TEST_CASE("measure prints how each VWS changes with each opacity", "[cli]") {

@@ -22,7 +22,7 @@ namespace {
 
 const std::vector<std::string> kCommands{"info",   "samples", "presets",  "generate",     "render", "measure",
                                          "fields", "propose", "refine",   "optimize",     "probe",  "views",
-                                         "space",  "bench",   "sequence", "saliency-map", "compare"};
+                                         "space",  "bench",   "sequence", "saliency-map", "compare", "plot", "reproduce"};
 
 std::string sourceFile(const std::string& path) {
     std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);
@@ -192,6 +192,7 @@ TEST_CASE("bash completes commands, options, values and samples", "[cli][documen
     CHECK(completions("pellucid-cli render x.nrrd --mode mi") == std::set<std::string>{"minip", "mip"});
     CHECK(completions("pellucid-cli render x.nrrd --light-preset m") == std::set<std::string>{"matte", "metal"});
     CHECK(completions("pellucid-cli generate sh") == std::set<std::string>{"shells"});
+    CHECK(completions("pellucid-cli reproduce table-3") == std::set<std::string>{"table-3.2"});
     // Bash takes the word after the colon for the one to complete.
     CHECK(completions("pellucid-cli info sample:sh") == std::set<std::string>{"shells"});
     CHECK(completions("pellucid-cli refine sample:shells --engine").empty());

@@ -1,4 +1,4 @@
-// The examples of the documents: every command of README, guide and reproduce.md that stands behind a `$` in an
+// The examples of the documents: every command of README and guide that stands behind a `$` in an
 // indented block, run in the order of the document in a folder of its own, and what is shown below it.
 //
 // What is shown is what a terminal shows, standard error included, line by line:
@@ -18,7 +18,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <regex>
 #include <sstream>
 
@@ -27,44 +26,27 @@
 
 #include "cli_runner.h"
 #include "command_line.h"
+#include "printed_lines.h"
 
 using pellucid::cli::shellQuoted;
+using pellucid::test::kTime;
+using pellucid::test::Lines;
+using pellucid::test::linesOf;
+using pellucid::test::sameLine;
+using pellucid::test::textOf;
+using pellucid::test::timeless;
 using pellucid::test::Workshop;
 
 namespace fs = std::filesystem;
 
 namespace {
 
-using Lines = std::vector<std::string>;
-
 const std::string kIndent = "    ", kPrompt = kIndent + "$ ", kLeftOut = "…";
 
-/// Files that documents name and that are not kept here, with where they lie in the folder of shared data.
-const std::map<std::string, std::string> kOutside{
-    {"nucleon.mhd", "data/real/nucleon"}, {"tooth.mhd", "data/real/tooth"},
-    {"nucleon_naive.tfi", "data/thesis"}, {"nucleon_naive_proportional.tfi", "data/thesis"},
-    {"tooth_naive.tfi", "data/thesis"},   {"tooth_naive_proportional.tfi", "data/thesis"},
-};
-
-Lines linesOf(const std::string& text) {
-    std::istringstream in(text);
-    Lines lines;
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-}
-
-std::string textOf(const fs::path& path) {
-    std::ifstream in(path);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 struct Example {
-    std::string command;       ///< of several lines where it goes on behind a backslash
-    std::size_t begin, end;    ///< lines of the document that are its output, from 0
-    Lines shown;               ///< these, without indentation
-    bool needsOutside = false; ///< names a file of kOutside
+    std::string command;    ///< of several lines where it goes on behind a backslash
+    std::size_t begin, end; ///< lines of the document that are its output, from 0
+    Lines shown;            ///< these, without indentation
 };
 
 std::vector<Example> examplesOf(const Lines& document) {
@@ -82,16 +64,10 @@ std::vector<Example> examplesOf(const Lines& document) {
             example.shown.push_back(document[i].substr(kIndent.size()));
             example.end = ++i;
         }
-        for (const auto& [name, folder] : kOutside)
-            example.needsOutside = example.needsOutside || std::regex_search(example.command, std::regex("\\b" + name));
         examples.push_back(std::move(example));
     }
     return examples;
 }
-
-const std::regex kTime("[0-9]+(\\.[0-9]+)? (s|ms|µs)(?![A-Za-z])");
-
-std::string timeless(const std::string& line) { return std::regex_replace(line, kTime, "TIME"); }
 
 /// `line` with the times of the first of `shown` that has the same words.
 std::string withTimesOf(const Lines& shown, const std::string& line) {
@@ -109,24 +85,6 @@ std::string withTimesOf(const Lines& shown, const std::string& line) {
         return result + line.substr(from);
     }
     return line;
-}
-
-bool sameLine(const std::string& shown, const std::string& printed) {
-    static const std::regex kDecimal("[0-9]+\\.[0-9]+");
-    const std::string a = timeless(shown), b = timeless(printed);
-    const std::sregex_iterator end;
-    std::sregex_iterator i(a.begin(), a.end(), kDecimal), j(b.begin(), b.end(), kDecimal);
-    std::size_t fromA = 0, fromB = 0; // behind the number before
-    for (; i != end && j != end; ++i, ++j) {
-        const auto atA = static_cast<std::size_t>(i->position()), atB = static_cast<std::size_t>(j->position());
-        if (a.substr(fromA, atA - fromA) != b.substr(fromB, atB - fromB)) return false;
-        const auto decimals = [](const std::string& number) { return number.size() - number.find('.') - 1; };
-        const double digit = std::pow(10.0, -static_cast<double>(std::max(decimals(i->str()), decimals(j->str()))));
-        if (std::abs(std::stod(i->str()) - std::stod(j->str())) > 1.5 * digit) return false;
-        fromA = atA + static_cast<std::size_t>(i->length());
-        fromB = atB + static_cast<std::size_t>(j->length());
-    }
-    return i == end && j == end && a.substr(fromA) == b.substr(fromB);
 }
 
 bool sameLines(const Lines& shown, const Lines& printed) {
@@ -150,25 +108,15 @@ Lines shortened(const Lines& printed, const Lines& shown) {
     return lines;
 }
 
-/// A folder in which the commands of a document work: with the program where README builds it, the data of the
-/// repository, and what documents take from outside where that is at hand.
+/// A folder in which the commands of a document work: with the program where README builds it, and the data of the
+/// repository.
 class Desk {
 public:
     Desk() {
         fs::create_directories(m_folder.path("build/release"));
         fs::create_directory_symlink(fs::path(PELLUCID_CLI).parent_path(), m_folder.path("build/release/bin"));
         fs::create_directory_symlink(PELLUCID_SOURCE_DIR "/data", m_folder.path("data"));
-        for (const auto& [name, folder] : kOutside) {
-            const fs::path from = fs::path(PELLUCID_SHARED_DIR) / folder;
-            m_hasOutside = m_hasOutside && fs::exists(from / name);
-            std::error_code ec;
-            for (const auto& entry : fs::directory_iterator(from, ec)) // a header comes with its data
-                if (entry.path().stem() == fs::path(name).stem())
-                    fs::create_symlink(entry.path(), m_folder.path(entry.path().filename().string()), ec);
-        }
     }
-
-    bool hasOutside() const { return m_hasOutside; }
 
     struct Printed {
         int status = -1;
@@ -191,7 +139,6 @@ public:
 
 private:
     Workshop m_folder, m_scripts;
-    bool m_hasOutside = true;
 };
 
 std::string joined(const Lines& lines) {
@@ -200,21 +147,16 @@ std::string joined(const Lines& lines) {
     return text;
 }
 
-/// Runs the examples of a document that need files from outside, or those that need none.
-void runExamples(const std::string& name, bool outside) {
+/// Runs the examples of a document.
+void runExamples(const std::string& name) {
     const bool refreshes = std::getenv("PELLUCID_REFRESH_DOCS") != nullptr;
     const fs::path path = fs::path(PELLUCID_SOURCE_DIR) / name;
     Lines document = linesOf(textOf(path));
     const std::vector<Example> examples = examplesOf(document);
     const Desk desk;
-    if (outside && !desk.hasOutside()) {
-        std::cout << "SKIPPED: the volumes that " << name << " takes from outside are not there\n";
-        return;
-    }
     int ran = 0;
     std::ptrdiff_t shift = 0; // of lines behind what was refreshed
     for (const Example& example : examples) {
-        if (example.needsOutside != outside) continue;
         ++ran;
         const Desk::Printed printed = desk.run(example.command);
         INFO(name << ", line " << example.begin << ": " << example.command);
@@ -269,16 +211,8 @@ TEST_CASE("examples are compared by their rules", "[cli][examples]") {
     REQUIRE(examples.size() == 2);
     CHECK(examples[0].command == "first --with \\\n        more");
     CHECK(examples[0].shown == Lines{"one", "two"});
-    CHECK_FALSE(examples[0].needsOutside);
     CHECK(examples[1].shown.empty());
-    CHECK(examples[1].needsOutside);
 }
 
-TEST_CASE("README's examples are true", "[cli][examples][documents]") { runExamples("README.md", false); }
-TEST_CASE("the guide's examples are true", "[cli][examples][documents]") { runExamples("docs/guide.md", false); }
-TEST_CASE("the examples of figures and tables are true", "[cli][examples][documents]") {
-    runExamples("docs/reproduce.md", false);
-}
-TEST_CASE("examples with the thesis's own volumes are true", "[cli][examples][documents]") {
-    runExamples("docs/reproduce.md", true);
-}
+TEST_CASE("README's examples are true", "[cli][examples][documents]") { runExamples("README.md"); }
+TEST_CASE("the guide's examples are true", "[cli][examples][documents]") { runExamples("docs/guide.md"); }

@@ -10,11 +10,13 @@
 #include <QDialog>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
+#include <QFile>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QTableView>
+#include <QTemporaryDir>
 #include <QTimer>
 #include <QToolButton>
 #include <QToolTip>
@@ -71,6 +73,29 @@ TEST_CASE("shares are read as people type them", "[targets]") {
     CHECK(shareFromText("30 %") == 0.3);
     CHECK(shareFromText("100%") == 1.0);
     for (const char* wrong : {"", "x", "1.5", "-0.1", "130 %", "30", "nan"}) CHECK_FALSE(shareFromText(wrong));
+}
+
+TEST_CASE("the bars are saved as charts, with their targets", "[targets]") {
+    OpenWindow w;
+    w.document().setTargets({0.1, 0.3, 0.6});
+    w.settle();
+    const QTemporaryDir folder;
+    REQUIRE(w.saving().saveBars(folder.filePath("bars.svg")));
+    QFile file(folder.filePath("bars.svg"));
+    REQUIRE(file.open(QIODevice::ReadOnly));
+    const QByteArray svg = file.readAll();
+    for (const FeatureMeasures& m : w.document().measures()->features)
+        for (const double share : {m.visibility, m.vws, m.vwsBrightness, m.vwsSaturation})
+            CHECK(svg.contains(">" + QByteArray::number(share, 'f', 4) + "</text>"));
+    CHECK(svg.count("stroke-dasharray") == 3); // a target each
+    CHECK_FALSE(svg.contains("2D feature saliency"));
+    REQUIRE(w.saving().saveBars(folder.filePath("bars.png")));
+    CHECK(QImage(folder.filePath("bars.png")).width() == 2 * 760);
+
+    // The button of the panel and the menu are one.
+    auto& button = w.child<QToolButton>("saveBarsButton");
+    CHECK(button.isEnabled());
+    CHECK(button.defaultAction() == &w.child<QAction>("saveBarsAction"));
 }
 
 TEST_CASE("a target is dragged, typed and locked; each is one step", "[targets]") {

@@ -16,6 +16,8 @@
 #include <QDoubleSpinBox>
 #include <QDragEnterEvent>
 #include <QDropEvent>
+#include <QFile>
+#include <QImage>
 #include <QLabel>
 #include <QMessageBox>
 #include <QMimeData>
@@ -458,6 +460,22 @@ TEST_CASE("a saved transfer function is the one that is shown", "[window]") {
     CHECK_FALSE(w.saving().saveTf("/nonexistent/folder/mine.tf.json"));
     REQUIRE(errorDialog(w.window) != nullptr);
     errorDialog(w.window)->accept();
+}
+
+TEST_CASE("the transfer function is saved as a drawing, over the histogram", "[window]") {
+    OpenWindow w;
+    const QTemporaryDir folder;
+    w.document().setTf(tents(3, 0.2), "Tents");
+    CHECK(w.child<QAction>("saveTfDrawingAction").isEnabled());
+    REQUIRE(w.saving().saveTfDrawing(folder.filePath("tf.svg")));
+    QFile file(folder.filePath("tf.svg"));
+    REQUIRE(file.open(QIODevice::ReadOnly));
+    const QByteArray svg = file.readAll();
+    CHECK(svg.contains("voxels (logarithmic)"));
+    CHECK(svg.contains("opacity per d0"));
+    CHECK(svg.contains(QByteArray::fromStdString("\"" + hexFromRgb(tents(3).points[1].color) + "\"")));
+    REQUIRE(w.saving().saveTfDrawing(folder.filePath("tf.png")));
+    CHECK_FALSE(QImage(folder.filePath("tf.png")).isNull());
 }
 
 TEST_CASE("closing asks about unsaved changes", "[window]") {

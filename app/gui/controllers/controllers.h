@@ -29,14 +29,14 @@ struct Controllers {
     RefineController refining{services, optimizing};
     FieldController fields{services}; ///< what is drawn in the place of the data
     LiveController live{services, optimizing};
-    SaveController saving{services, fields};
+    PictureSaliencyController pictureSaliency{services};
+    SaveController saving{services, fields, pictureSaliency};
     OpenController opening{services, saving};
     StartController starting{services, opening};
     RecoveryController recovery{services, opening, saving};
     PlayerController player{services, opening}; ///< frames of a series
     AdaptController adapting{services, player}; ///< transfer functions over time
     ViewSearchController views{services, optimizing};
-    PictureSaliencyController pictureSaliency{services};
     ProbeController probe{services};
     TargetActions targets{services};
     FeatureActions features{services, targets};

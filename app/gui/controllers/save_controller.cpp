@@ -3,11 +3,15 @@
 #include <QMessageBox>
 
 #include "controllers/field_controller.h"
+#include "controllers/picture_saliency_controller.h"
 #include "dialogs/ask_file.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "render/annotation_raster.h"
+#include "report/drawing_file.h"
 #include "report/report.h"
+#include "report/share_bars.h"
+#include "report/tf_plot.h"
 #include "services/services.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
@@ -20,10 +24,27 @@ QString baseName(const Scene& scene) {
     return QFileInfo(QString::fromStdString(scene.volume->title)).completeBaseName();
 }
 
+/// As the panel shows them. Throws Error where they are not measured.
+std::vector<ShareBar> presentBars(Services& services, const PictureSaliencyController& pictureSaliency) {
+    const Scene& scene = services.scene();
+    const Results& results = services.results();
+    if (results.failure()) throw *results.failure();
+    if (!results.measures() || !results.measuresAreCurrent())
+        throw Error("the bars are still being measured", scene.volume->title, "try again when they are there");
+    std::vector<ShareBar> bars = shareBarsOf(scene.tf, results.measures()->features);
+    const std::vector<double> targets = scene.targets();
+    for (std::size_t f = 0; f < bars.size(); ++f) {
+        bars[f].target = targets.at(f);
+        if (pictureSaliency.state() == PictureSaliencyController::State::Current) bars[f].fs = pictureSaliency.share(f);
+    }
+    return bars;
+}
+
 } // namespace
 
-SaveController::SaveController(Services& services, FieldController& fields)
-    : m_services(services), m_fields(fields),
+SaveController::SaveController(Services& services, FieldController& fields,
+                               const PictureSaliencyController& pictureSaliency)
+    : m_services(services), m_fields(fields), m_pictureSaliency(pictureSaliency),
       m_images(
           [](const Picture& picture, const JobControl& job) {
               const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
@@ -70,9 +91,15 @@ void SaveController::addActions() {
     menu.separate();
     menu.add("saveTfAction", tr("Sa&ve transfer function"), "Ctrl+T", {}, [this] { chooseTf(false); });
     menu.add("saveTfAsAction", tr("Save transfer f&unction as…"), "Ctrl+Shift+T", {}, [this] { chooseTf(true); });
+    menu.add("saveTfDrawingAction", tr("Save transfer function as &drawing…"), {},
+             tr("The curve in its colours, over the histogram"), [this] { chooseTfDrawing(); });
     menu.separate();
     menu.add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), [this] { chooseImage(); },
              {.inToolBar = true});
+    m_barsAction =
+        menu.add("saveBarsAction", tr("Save &bars…"), {},
+                 tr("What each feature shows, visibility and VWS, as bar charts in the features' colours"),
+                 [this] { chooseBars(); }, {.enabled = [this] { return !m_services.scene().tf.features.empty(); }});
     menu.add("saveReportAction", tr("Save &report of the last run…"), {},
              tr("One page about the latest optimization: pictures, bars, curves, settings"),
              [this] { chooseReport(*latestRun()); },
@@ -98,6 +125,22 @@ bool SaveController::saveTf(const QString& path) {
         writeTf(*m_services.store().committed().session.tf(), path.toStdString());
         setTfPath(path);
         m_services.store().setTfSaved();
+        saySaved(path);
+    });
+}
+
+bool SaveController::saveBars(const QString& path) {
+    return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the bars"), [&] {
+        writeShareCharts(presentBars(m_services, m_pictureSaliency), path.toStdString());
+        saySaved(path);
+    });
+}
+
+bool SaveController::saveTfDrawing(const QString& path) {
+    return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the drawing"), [&] {
+        const Scene& scene = m_services.scene();
+        const Plot plot = tfPlot(scene.tf, {scene.volume->range(), scene.unit.value_or(""), scene.histogram.get()});
+        writeDrawing([&](const PlotPage& page) { return drawingOf(plot, page); }, {}, path.toStdString());
         saySaved(path);
     });
 }
@@ -186,6 +229,23 @@ void SaveController::chooseImage() {
         keepFolderOf("imageFolder", options.path);
         return saveImage(options);
     }
+}
+
+QString SaveController::askDrawing(const QString& title, const QString& ending) {
+    if (!m_services.store().hasVolume()) return {};
+    const QString path =
+        askSavePath(m_services.window(), title, "imageFolder", baseName(m_services.scene()) + ending + ".svg",
+                    tr("Drawing (*.svg);;Picture (*.png)"), ".png", {});
+    return path.isEmpty() || !QFileInfo(path).suffix().isEmpty() ? path : path + ".svg";
+}
+
+void SaveController::chooseBars() {
+    if (const QString path = askDrawing(tr("Save bars"), "_bars"); !path.isEmpty()) saveBars(path);
+}
+
+void SaveController::chooseTfDrawing() {
+    if (const QString path = askDrawing(tr("Save transfer function as drawing"), "_tf"); !path.isEmpty())
+        saveTfDrawing(path);
 }
 
 bool SaveController::maybeSave() {

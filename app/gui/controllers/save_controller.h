@@ -1,4 +1,4 @@
-// Saving: sessions, transfer functions and pictures.
+// Saving: sessions, transfer functions, pictures, bars and reports.
 #pragma once
 
 #include <QObject>
@@ -10,12 +10,13 @@
 namespace pellucid::gui {
 
 class FieldController;
+class PictureSaliencyController;
 class Services;
 
 class SaveController : public QObject {
     Q_OBJECT
 public:
-    SaveController(Services& services, FieldController& fields);
+    SaveController(Services& services, FieldController& fields, const PictureSaliencyController& pictureSaliency);
 
     void addActions();
 
@@ -23,6 +24,11 @@ public:
     bool saveTf(const QString& path);
     /// As seen by the present camera, in the background; several one after the other.
     void saveImage(const SaveImageOptions& options);
+    /// What each feature shows now, as bar charts, with the targets; .svg or .png. False: it could not be written, and
+    /// a dialog says why.
+    bool saveBars(const QString& path);
+    /// The transfer function over the histogram, as a drawing; .svg or .png. Likewise.
+    bool saveTfDrawing(const QString& path);
     /// Of a run with a start: the folder gets report.html, curves.csv, and the session that the run began with; in the
     /// background.
     void saveReport(const Run& run, const QString& folder);
@@ -36,6 +42,8 @@ public:
     void setTfPath(const QString& path) { m_tfPath = path; }
     const QString& sessionPath() const { return m_sessionPath; }
     void setSessionPath(const QString& path);
+
+    QAction* barsAction() const { return m_barsAction; }
 
     bool isBusy() const { return m_images.isRunning() || m_reports.isRunning(); }
     const QString& busyText() const { return m_busyText; }
@@ -68,11 +76,17 @@ private:
     bool chooseSession(bool askForName);
     bool chooseTf(bool askForName);
     void chooseImage();
+    void chooseBars();
+    void chooseTfDrawing();
+    /// Asks where a drawing is to go; empty: nowhere.
+    QString askDrawing(const QString& title, const QString& ending);
 
     Services& m_services;
     FieldController& m_fields;
+    const PictureSaliencyController& m_pictureSaliency;
     QString m_tfPath, m_sessionPath, m_busyText;
     QSize m_seen;
+    QAction* m_barsAction = nullptr;
     Job<Picture, QString> m_images;
     Job<ReportTask, QString> m_reports;
 };

@@ -227,8 +227,10 @@ FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidg
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
     QLayout* const status = columnOf({m_distance, m_progress, m_message}, 4);
-    QLayout* const liveRow = rowOf(
-        {m_targets, actionButton(*m_controllers.live.action(), tr("Live"), "liveTargetsButton"), Cell::rest()}, 4);
+    QLayout* const liveRow =
+        rowOf({m_targets, actionButton(*m_controllers.live.action(), tr("Live"), "liveTargetsButton"), Cell::rest(),
+               actionButton(*m_controllers.saving.barsAction(), tr("Save bars…"), "saveBarsButton")},
+              4);
     setLayout(inset(columnOf({m_table,
                               inset(makeShapeRow(), kSides),
                               inset(liveRow, kSides),

@@ -1,0 +1,117 @@
+// What `reproduce` keeps and shows of a figure.
+#include "report/reproduction.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "report/reproduction_page.h"
+
+using namespace pellucid;
+
+namespace {
+
+/// With everything that an item may have, and with characters that pages must escape.
+Reproduction item() {
+    Reproduction r;
+    r.id = "4.5";
+    r.shows = {"4.5", "4.6"};
+    r.title = "Bars <of> disks";
+    r.thesis = "bars & disks.";
+    r.equations = {{"4.12", "src/saliency/vws.cpp"}, {"4.4", "src/render/sweep.cpp"}};
+    r.data = {"sample:disks, 64 voxels long"};
+    r.pictures = {{"4.5/left.png", "4.5 (a)", "from \"the left\""}};
+    r.numbers = {{"moves", 3, 2, "moves"}, {"time", 0.5, 2, "s"}};
+    r.tables = {{"Shares", {"feature", "VWS"}, {{"first_disk|", "0.5"}}}};
+    r.statements = {{"A < B.", "4.3.5", true, "0.2 < 0.5"}, {"B < A.", "4.3.5", false, "0.5 > 0.2"}};
+    r.remarks = {"Ours is <a sample>."};
+    r.commands = {{"pellucid-cli measure sample:disks > 4.5/left.json", 1.5}};
+    r.seconds = 61;
+    return r;
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+} // namespace
+
+TEST_CASE("a reproduction is read back as it was", "[report][reproduce]") {
+    Reproduction r = item();
+    r.error = "it failed";
+    const nlohmann::json json = nlohmann::json::parse(jsonFromReproduction(r).dump());
+    CHECK(reproductionFromJson(json, "item.json") == r);
+
+    nlohmann::json wrong = json;
+    wrong["statements"][1]["holds"] = "yes";
+    CHECK_THROWS_WITH(reproductionFromJson(wrong, "item.json"), Catch::Contains("item.json at /statements/1/holds"));
+    wrong = json;
+    wrong["tables"][0]["rows"][0].push_back("one too many");
+    CHECK_THROWS_AS(reproductionFromJson(wrong, "item.json"), Error);
+}
+
+TEST_CASE("items are called by all that they show", "[report][reproduce]") {
+    Reproduction r;
+    r.shows = {"4.1"};
+    CHECK(headingOf(r) == "Figure 4.1");
+    r.shows = {"3.4", "3.5"};
+    CHECK(headingOf(r) == "Figures 3.4 and 3.5");
+    r.shows = {"A.1", "A.2", "A.3"};
+    CHECK(headingOf(r) == "Figures A.1 to A.3");
+    r.shows = {"5.1", "5.2", "5.5"};
+    CHECK(headingOf(r) == "Figures 5.1, 5.2 and 5.5");
+    r.shows = {"table-3.2"};
+    CHECK(headingOf(r) == "Table 3.2");
+}
+
+TEST_CASE("the page has contents, statements and numbers, and escapes every text", "[report][reproduce]") {
+    const std::vector<Reproduction> items{item()};
+    const std::string html = htmlOf({items, "Pellucid <1>", "pellucid-cli reproduce", 75});
+    CHECK(has(html, "<a href=\"#4.5\">Figures 4.5 and 4.6</a>"));
+    CHECK(has(html, "Bars &lt;of&gt; disks"));
+    CHECK(has(html, "The thesis shows bars &amp; disks."));
+    CHECK(has(html, "src=\"4.5/left.png\""));
+    CHECK(has(html, "from &quot;the left&quot;"));
+    CHECK(has(html, "A &lt; B."));
+    CHECK(has(html, "<b>Does not hold</b>: 0.5 &gt; 0.2"));
+    CHECK(has(html, "Ours is &lt;a sample&gt;."));
+    CHECK(has(html, "measure sample:disks &gt; 4.5/left.json"));
+    CHECK(has(html, "Pellucid &lt;1&gt;"));
+    CHECK(has(html, "1 of 2 statements of its text hold"));
+    CHECK(has(html, "<td>1 of 2</td>"));
+    CHECK(has(html, "1 min 15 s"));
+    // 3 moves where the thesis has 2; half a second where it has two: a quarter.
+    CHECK(has(html, "<td>3.0000 moves</td><td>2.0000 moves</td><td>+1.0000</td>"));
+    CHECK(has(html, "<td>× 0.25</td>"));
+}
+
+TEST_CASE("an item that failed says why, on the page and in the index", "[report][reproduce]") {
+    Reproduction r = item();
+    r.error = "no <file>";
+    const std::vector<Reproduction> items{r};
+    CHECK(has(htmlOf({items, "", "", 0}), "It failed: no &lt;file&gt;"));
+    CHECK(has(htmlOf({items, "", "", 0}), "1 item failed"));
+    CHECK(has(indexOf(items), "It failed: no \\<file\\>"));
+}
+
+TEST_CASE("the index leads from equations to files, commands and results, without times", "[report][reproduce]") {
+    const std::vector<Reproduction> items{item()};
+    const std::string text = indexOf(items);
+    const std::size_t first = text.find("| (4.4) | `src/render/sweep.cpp` | `reproduce 4.5` | "
+                                        "[Figures 4.5 and 4.6](#figures-45-and-46) |"),
+                      second = text.find("| (4.12) | `src/saliency/vws.cpp` |");
+    CHECK(first != std::string::npos);
+    CHECK(second != std::string::npos);
+    CHECK(first < second); // by number, not by letters
+    CHECK(has(text, "\n## Figures 4.5 and 4.6\n"));
+    CHECK(has(text, "\n    pellucid-cli measure sample:disks > 4.5/left.json\n"));
+    CHECK(has(text, "| first\\_disk\\| | 0.5 |"));
+    CHECK(has(text, "**Does not hold**: 0.5 \\> 0.2."));
+    CHECK_FALSE(has(text, "time"));
+    CHECK_FALSE(has(text, "left.png"));
+
+    Reproduction later = item();
+    later.seconds = 99;
+    later.commands[0].seconds = 7;
+    later.numbers[1].ours = 9;
+    const std::vector<Reproduction> again{later};
+    CHECK(indexOf(again) == text);
+}
