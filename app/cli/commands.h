@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -37,5 +38,10 @@ Command addProbe(CLI::App& program);
 Command addViews(CLI::App& program);
 Command addReproduce(CLI::App& program);
 Command addBench(CLI::App& program);
+Command addStudyPrepare(CLI::App& study);
+Command addStudyRun(CLI::App& study);
+Command addStudyAnalyze(CLI::App& study);
+/// `study` with commands of its own.
+std::vector<Command> addStudy(CLI::App& program);
 
 } // namespace pellucid::cli

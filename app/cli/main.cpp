@@ -1,10 +1,10 @@
 // pellucid-cli: everything without a display. Parses, dispatches, and turns what happens into the exit status:
 // 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <new>
 #include <optional>
 #include <sstream>
@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "command_line.h"
 #include "commands.h"
 #include "interrupt.h"
@@ -82,22 +83,27 @@ std::vector<std::string> withListsExpanded(const std::vector<std::string>& argum
     return expanded;
 }
 
-/// "pellucid-cli measure", or the program alone where no command was recognized.
-std::string place(const CLI::App& program) {
-    const auto parsed = program.get_subcommands();
-    return parsed.empty() ? kProgram : std::string(kProgram) + " " + parsed.front()->get_name();
+/// The program, then the commands that were recognized, the last of them the one that is meant.
+std::vector<const CLI::App*> parsedApps(const CLI::App& program) {
+    std::vector<const CLI::App*> apps{&program};
+    for (auto parsed = program.get_subcommands(); !parsed.empty(); parsed = apps.back()->get_subcommands())
+        apps.push_back(parsed.front());
+    return apps;
 }
 
+/// "pellucid-cli measure", "pellucid-cli study run", or the program alone where no command was recognized.
+std::string place(const CLI::App& program) { return joined(parsedApps(program), " ", &CLI::App::get_name); }
+
 std::string problem(const CLI::App& program, const CLI::ParseError& error) {
-    const auto parsed = program.get_subcommands();
-    const CLI::App& app = parsed.empty() ? program : *parsed.front();
-    const auto unknown = app.remaining();
+    const CLI::App& app = *parsedApps(program).back();
+    const bool hasCommands = !app.get_subcommands([](const CLI::App*) { return true; }).empty();
+    const auto unknown = program.remaining(true);
     if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
         const std::string& first = unknown.front();
         if (first.starts_with("-")) return "unknown option '" + first + "'";
-        return (parsed.empty() ? "unknown command '" : "unexpected argument '") + first + "'";
+        return (hasCommands ? "unknown command '" : "unexpected argument '") + first + "'";
     }
-    if (parsed.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    if (hasCommands && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
         if (unknown.empty()) return "no command is given";
         return (unknown.front().starts_with("-") ? "unknown option '" : "unknown command '") + unknown.front() + "'";
     }
@@ -165,9 +171,9 @@ int fail(const Failure& failure) {
 /// The status of a stopped command. Where both a signal and an error came, the signal is what the user did.
 int stoppedStatus() { return interruptStatus() != 0 ? interruptStatus() : 130; }
 
-int runCommand(const Command& command, const CommonOptions& common) {
+int runCommand(const CLI::App& program, const Command& command, const CommonOptions& common) {
     Progress progress(Progress::styleFor(common.progress));
-    const std::string where = std::string(kProgram) + " " + command.app->get_name();
+    const std::string where = place(program);
     try {
         if (common.threads > 0) setThreadCount(common.threads);
         if (common.memoryGiB) setMemoryLimit(static_cast<std::uint64_t>(*common.memoryGiB * (1u << 30)));
@@ -199,11 +205,12 @@ int run(const std::vector<std::string>& arguments) {
     program.footer("Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.\n"
                    "`pellucid-cli COMMAND --help` lists a command's options.");
 
-    const std::array commands{addInfo(program),     addSamples(program),   addPresets(program), addGenerate(program),
-                              addRender(program),   addMeasure(program),   addFields(program),  addRefine(program),
-                              addOptimize(program), addSequence(program),  addSpace(program),   addPlot(program),
-                              addPropose(program),  addProbe(program),     addViews(program),   addSaliencyMap(program),
-                              addCompare(program),  addReproduce(program), addBench(program)};
+    std::vector<Command> commands{addInfo(program),     addSamples(program),   addPresets(program), addGenerate(program),
+                                  addRender(program),   addMeasure(program),   addFields(program),  addRefine(program),
+                                  addOptimize(program), addSequence(program),  addSpace(program),   addPlot(program),
+                                  addPropose(program),  addProbe(program),     addViews(program),   addSaliencyMap(program),
+                                  addCompare(program),  addReproduce(program), addBench(program)};
+    std::ranges::move(addStudy(program), std::back_inserter(commands));
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);
 
@@ -226,7 +233,7 @@ int run(const std::vector<std::string>& arguments) {
     }
     const auto chosen =
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
-    return runCommand(*chosen, common);
+    return runCommand(program, *chosen, common);
 }
 
 } // namespace

@@ -19,6 +19,14 @@ _pellucid_cli() {
         return
     fi
     local command=${words[1]}
+    if [[ $command == study ]]; then
+        if ((count == 2)); then
+            choices=$("$program" study --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
+            COMPREPLY=($(compgen -W "$choices --help" -- "$current"))
+            return
+        fi
+        command="study ${words[2]}"
+    fi
 
     case $previous in
         --field-colormap) choices="feature hue spiral ember sand grey blue-orange blue-red" ;;
@@ -59,7 +67,7 @@ _pellucid_cli() {
         --*)
             # What the program's help gives as the option's value: its words are choices; of a flag there is none.
             local value
-            value=$("$program" "$command" --help 2>/dev/null | sed -n "s/^  $previous  *\([^ ]*\).*/\1/p" | head -n 1)
+            value=$("$program" $command --help 2>/dev/null | sed -n "s/^  $previous  *\([^ ]*\).*/\1/p" | head -n 1)
             if [[ $value == *[A-Z]* || $value == *"|"* ]]; then
                 choices=$(tr '|' '\n' <<<"$value" | grep -E '^[a-z][a-z-]*$')
                 [[ -n $choices ]] || return
@@ -70,7 +78,7 @@ _pellucid_cli() {
     if [[ -n $choices ]]; then
         COMPREPLY=($(compgen -W "$choices" -- "$current"))
     elif [[ $current == -* ]]; then
-        choices=$("$program" "$command" --help 2>/dev/null | grep -oE -- '--[a-z][a-z0-9-]*' | sort -u)
+        choices=$("$program" $command --help 2>/dev/null | grep -oE -- '--[a-z][a-z0-9-]*' | sort -u)
         COMPREPLY=($(compgen -W "$choices" -- "$current"))
     elif [[ $command == reproduce ]]; then
         choices=$("$program" reproduce --list 2>/dev/null | sed 's/  .*//')
@@ -78,6 +86,9 @@ _pellucid_cli() {
     elif [[ $command == generate ]]; then
         choices=$("$program" samples 2>/dev/null | sed -n 's/^sample:\([^ ]*\) .*/\1/p')
         COMPREPLY=($(compgen -W "$choices" -- "$current"))
+    elif [[ $command == study* ]]; then
+        COMPREPLY=($(compgen -f -- "$current"))
+        compopt -o filenames 2>/dev/null
     elif [[ $command != samples && $command != presets && $previous != --tf && $previous != --ground ]]; then
         choices=$("$program" samples 2>/dev/null | sed -n 's/^\(sample:[^ ]*\) .*/\1/p')
         COMPREPLY=($(compgen -W "$choices" -- "$current") $(compgen -f -- "$current"))

@@ -10,6 +10,7 @@
 
 #include "controllers/controllers.h"
 #include "controllers/menu_actions.h"
+#include "runner/study_window.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
 #include "widgets/input_habits.h"
@@ -54,6 +55,9 @@ void describe(QCommandLineParser& parser) {
                       "SPEC"});
     parser.addOption({"session", "Continue with a saved session, a *.pellucid.json file.", "FILE"});
     parser.addOption({"windows", "Each FILE in a window of its own, not as frames of one series."});
+    parser.addOption({"study", "Show the study that was prepared into a folder, and nothing else.", "DIR"});
+    parser.addOption(
+        {"participant", "Who takes part in the study; one who has begun goes on (default: a new one).", "ID"});
     parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
     parser.addOption({"theme", "Colours of the window: dark, light or system; without it, as chosen last.", "NAME"});
     parser.addOption({"size", "Size of the window in pixels.", "WxH"});
@@ -82,6 +86,7 @@ struct Options {
     ViewRenderer renderer = ViewRenderer::Auto;
     QSize size; ///< of a window; empty: as the last one was
     QString screenshot, tf;
+    QString study, participant; ///< a folder; "": none
     QList<QStringList> documents;
     bool onSample = false; ///< nobody has named anything to open
 };
@@ -110,6 +115,15 @@ Options optionsOf(QCommandLineParser& parser) {
         if (parts.size() == 2) o.size = {parts[0].toInt(), parts[1].toInt()};
         if (o.size.width() < 1 || o.size.height() < 1) throw wrong("bad size", "size", "write it as 1280x800");
     }
+    o.study = parser.value("study");
+    o.participant = parser.value("participant");
+    if (!o.participant.isEmpty() && o.study.isEmpty())
+        throw UsageError("a participant of no study", o.participant.toStdString(), "give --study DIR, too");
+    if (parser.isSet("study") && o.study.isEmpty())
+        throw UsageError("no study is named", "--study", "name the folder that a study was prepared into");
+    if (parser.isSet("study") && !parser.positionalArguments().isEmpty())
+        throw UsageError("a study needs no file", parser.positionalArguments().join(" ").toStdString(), "leave it out");
+    if (parser.isSet("study")) return o;
     o.tf = parser.value("tf");
     QStringList volumes;
     for (const QString& file : parser.positionalArguments()) {
@@ -145,6 +159,12 @@ void photograph(MainWindow& window, const QString& file) {
     QObject::connect(&window, &MainWindow::settledChanged, &window, save, Qt::QueuedConnection);
     for (const auto failed : {&OpenController::failed, &OpenController::tfFailed})
         QObject::connect(&window.controllers().opening, failed, &window, fail, Qt::QueuedConnection);
+}
+
+int showStudy(const Options& o) {
+    const std::string folder = o.study.toStdString();
+    openStudy(folder, o.participant.isEmpty() ? newParticipantId(folder) : o.participant.toStdString());
+    return QApplication::exec();
 }
 
 int showWindows(const Options& o) {
@@ -212,7 +232,9 @@ int main(int argc, char** argv) {
     }
     applyTheme(application, options.theme);
     try {
-        return showWindows(options);
+        return options.study.isEmpty() ? showWindows(options) : showStudy(options);
+    } catch (const UsageError& error) {
+        return complain(error.what(), kUsage);
     } catch (const Error& error) {
         return complain(error.what(), kFailed);
     }

@@ -1,7 +1,6 @@
 #include "base/atomic_file.h"
 
 #include <atomic>
-#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <mutex>
@@ -13,9 +12,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/error.h"
 #include "base/file_watch.h"
 #include "base/text.h"
+#include "base/write_errors.h"
 
 namespace pellucid {
 
@@ -49,21 +48,6 @@ private:
     std::string m_path;
 };
 
-/// Calls a function of the system again where a signal came between.
-template <class Call>
-auto uninterrupted(const Call& call) {
-    for (;;)
-        if (const auto result = call(); result >= 0 || errno != EINTR) return result;
-}
-
-FileError cannotWrite(const std::string& path, int error) {
-    const std::string what = "cannot write the file (" + std::generic_category().message(error) + ")";
-    if (error == ENOSPC || error == EDQUOT) return {what, path, "make room, or choose another place"};
-    if (error == EFBIG) return {what, path, "raise the limit on file sizes, or choose another place"};
-    if (error == ENAMETOOLONG) return {what, path, "choose a shorter name"};
-    return {what, path, "check permissions and space"};
-}
-
 fs::path folderOf(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
 /// What status() says of `path`; throws where the system cannot tell, as for a name that is too long.
@@ -88,24 +72,37 @@ std::filesystem::path behindLinks(std::filesystem::path path) {
     return path;
 }
 
-OutputFile::~OutputFile() {
-    if (m_descriptor >= 0) ::close(m_descriptor);
+FileError cannotWrite(const std::string& path, int error) {
+    const std::string what = "cannot write the file (" + std::generic_category().message(error) + ")";
+    if (error == ENOSPC || error == EDQUOT) return {what, path, "make room, or choose another place"};
+    if (error == EFBIG) return {what, path, "raise the limit on file sizes, or choose another place"};
+    if (error == ENAMETOOLONG) return {what, path, "choose a shorter name"};
+    return {what, path, "check permissions and space"};
 }
 
-void OutputFile::write(const void* data, std::size_t bytes) {
+void writeAll(int descriptor, const void* data, std::size_t bytes, const std::string& path) {
     const char* from = static_cast<const char*>(data);
     while (bytes > 0) {
-        const ssize_t written = uninterrupted([&] { return ::write(m_descriptor, from, bytes); });
-        if (written < 0) throw cannotWrite(m_path, errno);
+        const ssize_t written = uninterrupted([&] { return ::write(descriptor, from, bytes); });
+        if (written < 0) throw cannotWrite(path, errno);
         from += written;
         bytes -= static_cast<std::size_t>(written);
     }
 }
 
-void OutputFile::close(bool flushToDisk) {
-    // Some file systems take every byte and tell only here that there was no room.
-    if (flushToDisk && uninterrupted([&] { return fsync(m_descriptor); }) != 0 && errno != EINVAL && errno != ENOSYS)
-        throw cannotWrite(m_path, errno);
+void flushToDisk(int descriptor, const std::string& path) {
+    if (uninterrupted([&] { return fsync(descriptor); }) != 0 && errno != EINVAL && errno != ENOSYS)
+        throw cannotWrite(path, errno);
+}
+
+OutputFile::~OutputFile() {
+    if (m_descriptor >= 0) ::close(m_descriptor);
+}
+
+void OutputFile::write(const void* data, std::size_t bytes) { writeAll(m_descriptor, data, bytes, m_path); }
+
+void OutputFile::close(bool flush) {
+    if (flush) flushToDisk(m_descriptor, m_path);
     if (::close(std::exchange(m_descriptor, -1)) != 0 && errno != EINTR) throw cannotWrite(m_path, errno);
 }
 

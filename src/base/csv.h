@@ -1,9 +1,11 @@
 // Tables as text (CSV, RFC 4180): commas, texts in quotes where they need them, the same in every locale.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pellucid {
 
@@ -29,5 +31,14 @@ private:
     std::string m_text;
     bool m_isFirst = true; ///< of its line
 };
+
+/// A table as fields of lines.
+struct CsvRecords {
+    std::vector<std::vector<std::string>> records;
+    std::size_t wholeBytes = 0; ///< what is behind them is a line without an end
+};
+/// What CsvTable writes, and other programs alike. An apostrophe before what would be a formula is left out, and so are
+/// empty lines.
+CsvRecords readCsv(std::string_view text);
 
 } // namespace pellucid

@@ -207,7 +207,60 @@ double percentile(const Numbers& sorted, double part) {
     return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
 }
 
+/// P(T ≤ t) for t ≤ 0.
+double studentLowerTail(double t, double degrees) {
+    return 0.5 * Eigen::numext::betainc(degrees / 2, 0.5, degrees / (degrees + t * t));
+}
+
 } // namespace
+
+double median(std::span<const double> x) {
+    Numbers sorted(x.begin(), x.end());
+    std::ranges::sort(sorted);
+    return sorted.empty() ? kNone : percentile(sorted, 0.5);
+}
+
+double studentQuantile(double p, double degrees) {
+    if (p > 0.5) return -studentQuantile(1 - p, degrees);
+    double low = -1, high = 0;
+    while (studentLowerTail(low, degrees) > p) {
+        high = low;
+        low *= 2;
+    }
+    for (double middle = (low + high) / 2; low < middle && middle < high; middle = (low + high) / 2)
+        (studentLowerTail(middle, degrees) > p ? high : low) = middle;
+    return (low + high) / 2;
+}
+
+Mean meanOf(std::span<const double> x, double confidence) {
+    Mean mean;
+    mean.count = x.size();
+    if (x.empty()) return mean;
+    const auto n = static_cast<double>(x.size());
+    mean.value = std::accumulate(x.begin(), x.end(), 0.0) / n;
+    if (x.size() < 2) return mean;
+    double squares = 0;
+    for (const double value : x) squares += (value - mean.value) * (value - mean.value);
+    mean.deviation = std::sqrt(squares / (n - 1));
+    const double half = studentQuantile((1 + confidence) / 2, n - 1) * mean.deviation / std::sqrt(n);
+    mean.interval = {mean.value - half, mean.value + half};
+    return mean;
+}
+
+Interval bootstrapInterval(std::size_t count, const FigureOfDrawn& figure, const BootstrapOptions& options) {
+    std::mt19937 random(options.seed);
+    std::vector<std::size_t> drawn(count);
+    Numbers found;
+    for (int n = 0; n < options.resamples; ++n) {
+        // Not std::uniform_int_distribution, which is another one in every standard library.
+        for (std::size_t& one : drawn)
+            one = static_cast<std::size_t>(static_cast<double>(random()) / 4294967296.0 * static_cast<double>(count));
+        if (const double value = figure(drawn); !std::isnan(value)) found.push_back(value);
+    }
+    if (found.empty()) return {};
+    std::ranges::sort(found);
+    return {percentile(found, (1 - options.confidence) / 2), percentile(found, (1 + options.confidence) / 2)};
+}
 
 double coefficient(CorrelationKind kind, std::span<const double> x, std::span<const double> y) {
     switch (kind) {
@@ -222,12 +275,12 @@ double coefficient(CorrelationKind kind, std::span<const double> x, std::span<co
 }
 
 Correlation correlation(CorrelationKind kind, std::span<const double> x, std::span<const double> y,
-                        const CorrelationOptions& options) {
+                        const BootstrapOptions& options) {
     if (x.size() != y.size()) throw Error("the series differ in length", "correlation", "give pairs of numbers");
     const auto isFinite = [](double v) { return std::isfinite(v); };
     if (!std::ranges::all_of(x, isFinite) || !std::ranges::all_of(y, isFinite))
         throw Error("a number is not finite", "correlation", "leave its pair out");
-    Correlation answer{coefficient(kind, x, y), kNone, kNone, kNone};
+    Correlation answer{coefficient(kind, x, y), kNone, {}};
     if (std::isnan(answer.value)) return answer;
     if (kind == CorrelationKind::Kendall) {
         answer.p = x.size() < 3 ? kNone : kendallP(x, y);
@@ -236,22 +289,17 @@ Correlation correlation(CorrelationKind kind, std::span<const double> x, std::sp
         answer.p = few && tiesOf(x).pairs == 0 && tiesOf(y).pairs == 0 ? exactSpearmanP(ranksOf(x), ranksOf(y))
                                                                        : studentP(answer.value, x.size());
     }
-    std::mt19937 random(options.seed);
-    Numbers found, ofX(x.size()), ofY(y.size());
-    for (int n = 0; n < options.resamples; ++n) {
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            // Not std::uniform_int_distribution, which is another one in every standard library.
-            const auto at =
-                static_cast<std::size_t>(static_cast<double>(random()) / 4294967296.0 * static_cast<double>(x.size()));
-            ofX[i] = x[at];
-            ofY[i] = y[at];
-        }
-        if (const double c = coefficient(kind, ofX, ofY); !std::isnan(c)) found.push_back(c);
-    }
-    if (found.empty()) return answer;
-    std::ranges::sort(found);
-    answer.low = percentile(found, (1 - options.confidence) / 2);
-    answer.high = percentile(found, (1 + options.confidence) / 2);
+    Numbers ofX(x.size()), ofY(y.size());
+    answer.interval = bootstrapInterval(
+        x.size(),
+        [&](std::span<const std::size_t> drawn) {
+            for (std::size_t i = 0; i < drawn.size(); ++i) {
+                ofX[i] = x[drawn[i]];
+                ofY[i] = y[drawn[i]];
+            }
+            return coefficient(kind, ofX, ofY);
+        },
+        options);
     return answer;
 }
 

@@ -7,6 +7,7 @@
 
 #include "report/convergence.h"
 #include "report/csv.h"
+#include "report/page_parts.h"
 #include "report/page_style.h"
 #include "report/share_bars.h"
 #include "report/svg_plot.h"
@@ -16,20 +17,6 @@
 namespace pellucid {
 
 namespace {
-
-std::string dataUri(const char* type, std::span<const unsigned char> bytes) {
-    return std::string("data:") + type + ";base64," + base64(bytes);
-}
-
-std::string imageOf(const ReportPicture& picture, const std::string& alt) {
-    return "<img src=\"" + dataUri("image/png", picture.png) + "\" width=\"" + std::to_string(picture.width) +
-           "\" height=\"" + std::to_string(picture.height) + "\" alt=\"" + escapedXml(alt) + "\">";
-}
-
-std::string svgOfPlot(const Plot& plot, double width, double height) {
-    const PlotPage page{.width = width, .height = height};
-    return "<figure>" + svgElement(drawingOf(plot, page), plot.title) + "</figure>\n";
-}
 
 std::vector<ShareBar> barsOf(const Report& report, const OptimizeState& state,
                              const std::vector<FeatureMeasures>& measures) {
@@ -129,8 +116,8 @@ std::string beforeAndAfter(const Report& report) {
     const auto side = [&](const char* title, const ReportPicture& picture, const TransferFunction& tf,
                           const OptimizeState& state, const std::vector<FeatureMeasures>& measures) {
         const PlotPage page{.width = 480};
-        return "<div><h3>" + std::string(title) + "</h3><figure>" + imageOf(picture, title) + "</figure>\n" +
-               svgOfPlot(tfPlot(tf, {report.window, report.unit, nullptr, mostOpacity}), 480, 220) + "<figure>" +
+        return "<div><h3>" + std::string(title) + "</h3><figure>" + pictureElement(picture, title) + "</figure>\n" +
+               plotFigure(tfPlot(tf, {report.window, report.unit, nullptr, mostOpacity}), 480, 220) + "<figure>" +
                svgElement(drawingOf(barsOf(report, state, measures), mostShare, page), "Shares of the features") +
                "</figure></div>\n";
     };
@@ -150,8 +137,8 @@ std::string statesOf(const Report& report) {
         const std::string what = (s.move == 0 ? std::string("start") : "move " + std::to_string(s.move)) +
                                  (state.level > 0 ? ", along rays" : "") + (s.move == run.best ? ", the answer" : "");
         html += std::string("<figure") + (s.move == run.best ? " class=\"answer\"" : "") + ">" +
-                imageOf(s.picture, what) + "<figcaption>" + what + "<br>F " + shortText(state.objective) + ", SSIM " +
-                fixedText(s.ssim, 4) + "</figcaption></figure>\n";
+                pictureElement(s.picture, what) + "<figcaption>" + what + "<br>F " + shortText(state.objective) +
+                ", SSIM " + fixedText(s.ssim, 4) + "</figcaption></figure>\n";
     }
     html += "</div>\n";
     if (report.states.size() < run.history.size())
@@ -162,19 +149,6 @@ std::string statesOf(const Report& report) {
 
 } // namespace
 
-std::string base64(std::span<const unsigned char> bytes) {
-    static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-        unsigned group = 0;
-        for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < left ? bytes[i + j] : 0u);
-        for (std::size_t j = 0; j < 4; ++j) text += j <= left ? kDigits[group >> (18 - 6 * j) & 63u] : '=';
-    }
-    return text;
-}
-
 std::string htmlOf(const Report& report) {
     const Run& run = report.run;
     const std::string title = report.title + ": saliency optimization";
@@ -183,15 +157,13 @@ std::string htmlOf(const Report& report) {
     html += "<h2>Before and after</h2>\n" + beforeAndAfter(report) + featureTable(report);
 
     html += "<h2>Convergence</h2>\n<div class=\"pair\">\n";
-    for (const Plot& plot : convergencePlots(run)) html += svgOfPlot(plot, 480, 300);
-    html += svgOfPlot(ssimPlot(report), 480, 300) + "</div>\n";
+    for (const Plot& plot : convergencePlots(run)) html += plotFigure(plot, 480, 300);
+    html += plotFigure(ssimPlot(report), 480, 300) + "</div>\n";
     const Run* const pointer = &run;
     const std::string csv = csvOf(std::span(&pointer, 1));
     html += "<p class=\"faint\">F is the root mean square distance of the VWS from the targets; dashed lines are the "
             "tolerance and the targets. <a download=\"" +
-            std::string(kCurvesFile) + "\" href=\"" +
-            dataUri("text/csv", {reinterpret_cast<const unsigned char*>(csv.data()), csv.size()}) +
-            "\">The curves as a table</a></p>\n";
+            std::string(kCurvesFile) + "\" href=\"" + dataUri("text/csv", csv) + "\">The curves as a table</a></p>\n";
 
     html += "<h2>The states, and how alike they look</h2>\n<p>" + wordsOf(thresholdCheck(run, report.states)) +
             "</p>\n" + statesOf(report) +

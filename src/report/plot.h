@@ -12,6 +12,7 @@ namespace pellucid {
 struct PlotPoint {
     double x = 0, y = 0;      ///< finite, in the units of the axes
     bool preliminary = false; ///< its dot is hollow
+    double spread = 0;        ///< half the height of an interval around it; 0: none
     bool operator==(const PlotPoint&) const = default;
 };
 
@@ -21,6 +22,7 @@ struct PlotSeries {
     bool dashed = false;
     bool dotted = false;           ///< a dot at each point
     std::vector<PlotPoint> points; ///< in the order in which the line goes
+    bool joined = true;            ///< by a line; else dots alone
     bool operator==(const PlotSeries&) const = default;
 };
 

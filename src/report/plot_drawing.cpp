@@ -81,14 +81,26 @@ void addLine(PlotDrawing& drawing, const std::vector<Vec2>& points, const PlotSe
         {points, s.color ? PlotInk::Own : PlotInk::Text, s.color.value_or(Rgb{}), width, s.dashed});
 }
 
+void addDot(PlotDrawing& drawing, const Vec2& at, const PlotSeries& s, bool hollow) {
+    drawing.dots.push_back({at, kDot, s.color ? PlotInk::Own : PlotInk::Text, s.color.value_or(Rgb{}), hollow});
+}
+
+/// An upright line with a cross-line at either end.
+void addSpread(PlotDrawing& drawing, const PlotPoint& p, const PlotBox& box) {
+    const double x = box.xOf(p.x), low = box.yOf(p.y - p.spread), high = box.yOf(p.y + p.spread);
+    drawing.strokes.push_back({{{x, low}, {x, high}}, PlotInk::Rim});
+    for (const double y : {low, high}) drawing.strokes.push_back({{{x - kDot, y}, {x + kDot, y}}, PlotInk::Rim});
+}
+
 void addSeries(PlotDrawing& drawing, const PlotSeries& s, const PlotBox& box) {
     std::vector<Vec2> points;
-    for (const PlotPoint& p : s.points) points.emplace_back(box.xOf(p.x), box.yOf(p.y));
-    if (points.size() > 1) addLine(drawing, points, s, s.dashed ? 1.2 : kCurve);
+    for (const PlotPoint& p : s.points) {
+        points.emplace_back(box.xOf(p.x), box.yOf(p.y));
+        if (p.spread > 0) addSpread(drawing, p, box);
+    }
+    if (points.size() > 1 && s.joined) addLine(drawing, points, s, s.dashed ? 1.2 : kCurve);
     if (!s.dotted) return;
-    const PlotInk ink = s.color ? PlotInk::Own : PlotInk::Text;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        drawing.dots.push_back({points[i], kDot, ink, s.color.value_or(Rgb{}), s.points[i].preliminary});
+    for (std::size_t i = 0; i < points.size(); ++i) addDot(drawing, points[i], s, s.points[i].preliminary);
 }
 
 using Anchor = PlotText::Anchor;
@@ -108,7 +120,10 @@ void addTitleAndLegend(PlotDrawing& drawing, const Plot& plot, const PlotPage& p
         const double y = legendTop(plot, page) + (entry.row + 0.7) * lineHeight(page), middle = y - 0.35 * size;
         double x = entry.x;
         if (entry.series != nullptr) {
-            addLine(drawing, {{x, middle}, {x + kSwatch, middle}}, *entry.series, kCurve);
+            if (entry.series->joined)
+                addLine(drawing, {{x, middle}, {x + kSwatch, middle}}, *entry.series, kCurve);
+            else
+                addDot(drawing, {x + kSwatch / 2, middle}, *entry.series, false);
             x += kSwatch + kGap;
         }
         addText(drawing, page, {x, y}, entry.text, PlotInk::Text);

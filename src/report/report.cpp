@@ -15,6 +15,7 @@
 #include "render/ssim.h"
 #include "report/csv.h"
 #include "report/html_report.h"
+#include "report/page_parts.h"
 #include "session/session_json.h"
 #include "tf/shown_tf.h"
 
@@ -25,31 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kWidthOfStates = 192; ///< at most, pixels
-
-/// Means over squares of pixels, as wide as `most` at most.
-Image reduced(const Image& image, int most) {
-    const int factor = std::max(1, (image.width + most - 1) / most);
-    if (factor == 1) return image;
-    Image small(std::max(1, image.width / factor), std::max(1, image.height / factor));
-    const auto scale = 1 / static_cast<float>(factor * factor);
-    for (int y = 0; y < small.height; ++y)
-        for (int x = 0; x < small.width; ++x) {
-            float* const to = small.pixel(x, y);
-            float alpha = 0; // colours are straight: each counts as much as it covers
-            for (int j = 0; j < factor; ++j)
-                for (int i = 0; i < factor; ++i) {
-                    const float* const from = image.pixel(std::min(image.width - 1, x * factor + i),
-                                                          std::min(image.height - 1, y * factor + j));
-                    for (int c = 0; c < 3; ++c) to[c] += from[3] * from[c];
-                    alpha += from[3];
-                }
-            for (int c = 0; c < 3; ++c) to[c] = alpha > 0 ? to[c] / alpha : 0;
-            to[3] = alpha * scale;
-        }
-    return small;
-}
-
-ReportPicture encoded(const Image& image) { return {image.width, image.height, pngOf(image)}; }
 
 std::string lengths(const Vec3& v) { return shortText(v.x) + " × " + shortText(v.y) + " × " + shortText(v.z); }
 

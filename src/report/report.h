@@ -6,18 +6,13 @@
 #include <vector>
 
 #include "base/job.h"
+#include "report/page_parts.h"
 #include "report/plot.h"
 #include "saliency/vws.h"
 #include "session/scene.h"
 #include "session/workspace.h"
 
 namespace pellucid {
-
-/// A picture as a PNG file.
-struct ReportPicture {
-    int width = 0, height = 0; ///< pixels
-    std::vector<unsigned char> png;
-};
 
 /// A state of the search as it looks.
 struct ReportState {
@@ -76,8 +71,7 @@ std::vector<std::size_t> chosenStates(const Run& run, std::size_t most);
 /// Draws and measures. Throws as renderers and Workspace::measure() do, and Cancelled.
 Report makeReport(const ReportRequest& request, Workspace& workspace, const JobControl& job = {});
 
-inline constexpr const char *kReportFile = "report.html", *kCurvesFile = "curves.csv",
-                            *kStartFile = "start.pellucid.json";
+inline constexpr const char *kCurvesFile = "curves.csv", *kStartFile = "start.pellucid.json";
 /// Writes kReportFile, kCurvesFile and, where there is a session, kStartFile into `folder`, which is made where it is
 /// missing; each is whole or as it was.
 /// Throws FileError.

@@ -14,6 +14,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_file.h"
+#include "base/stored_path.h"
 #include "session/ground_file.h"
 #include "tf/formats/tf_json.h"
 #include "volume/series.h"
@@ -103,26 +104,10 @@ std::optional<Fingerprint> fingerprintOf(const VolumeSource& source) {
 }
 
 std::string storedPath(const std::string& path, const std::string& folder, DataPaths paths) {
+    if (paths == DataPaths::Relative) return relativeTo(folder, path);
     std::error_code ec;
     const fs::path absolute = fs::absolute(path, ec);
-    if (ec) return path;
-    if (paths == DataPaths::Absolute) return absolute.lexically_normal().string();
-    // As they are written: who reads puts both together again, whatever links they lead through.
-    const fs::path base = fs::absolute(folder.empty() ? "." : folder, ec).lexically_normal();
-    const fs::path relative = absolute.lexically_normal().lexically_proximate(base);
-    return (ec || relative.empty() ? absolute : relative).generic_string();
-}
-
-/// Where a stored path leads from `folder`.
-std::string foundPath(const fs::path& stored, const std::string& folder) {
-    if (stored.is_absolute()) return stored.string();
-    const std::string path = (fs::path(folder) / stored).lexically_normal().string();
-    std::error_code ec;
-    if (fs::exists(path, ec)) return path;
-    // The folder may have been reached through a link this time.
-    const fs::path real = fs::canonical(folder.empty() ? "." : folder, ec);
-    const std::string other = ec ? path : (real / stored).lexically_normal().string();
-    return fs::exists(other, ec) ? other : path;
+    return ec ? path : absolute.lexically_normal().string();
 }
 
 // ---- writers and readers of the parts, each beside the other

@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/atomic_file.h"
+#include "base/text.h"
 #include "cli_runner.h"
 #include "options/setting_options.h"
 #include "session/session.h"
@@ -20,9 +21,26 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",   "samples", "presets",  "generate",     "render", "measure",
-                                         "fields", "propose", "refine",   "optimize",     "probe",  "views",
-                                         "space",  "bench",   "sequence", "saliency-map", "compare", "plot", "reproduce"};
+const std::vector<std::string> kCommands{"info",   "samples", "presets",  "generate",     "render",  "measure",
+                                         "fields", "propose", "refine",   "optimize",     "probe",   "views",
+                                         "space",  "bench",   "sequence", "saliency-map", "compare", "plot",
+                                         "reproduce", "study"};
+/// Of commands that have commands of their own.
+const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
+
+/// The words of each command that does something.
+std::vector<std::vector<std::string>> workingCommands() {
+    std::vector<std::vector<std::string>> all;
+    for (const std::string& command : kCommands)
+        if (command != "study") all.push_back({command});
+    for (const std::string& command : kStudyCommands) all.push_back({"study", command});
+    return all;
+}
+
+std::vector<std::string> withHelp(std::vector<std::string> words) {
+    words.emplace_back("--help");
+    return words;
+}
 
 std::string sourceFile(const std::string& path) {
     std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);
@@ -140,12 +158,19 @@ TEST_CASE("help and version are answers", "[cli][documentation]") {
     for (const std::string& command : kCommands) {
         INFO(command);
         CHECK(help.out.find("  " + command + " ") != std::string::npos);
-        const Outcome own = w.run({command, "--help"});
+    }
+    for (const auto& words : workingCommands()) {
+        const std::string command = pellucid::joined(words, " ");
+        INFO(command);
+        const Outcome own = w.run(withHelp(words));
         CHECK(own.status == 0);
         CHECK(own.err.empty());
         CHECK(own.out.find("Usage: pellucid-cli " + command) != std::string::npos);
         CHECK(optionsIn(own.out).count("--json") == 1);
     }
+    const Outcome study = w.run({"study", "--help"});
+    CHECK(study.status == 0);
+    for (const std::string& command : kStudyCommands) CHECK(study.out.find("  " + command + " ") != std::string::npos);
 }
 
 TEST_CASE("the manual has every command and option, and no others", "[cli][documentation]") {
@@ -153,10 +178,11 @@ TEST_CASE("the manual has every command and option, and no others", "[cli][docum
     const std::string manual = unescaped(sourceFile("docs/man/pellucid-cli.1"));
     REQUIRE_FALSE(manual.empty());
     std::set<std::string> known{"--version"};
-    for (const std::string& command : kCommands) {
+    for (const auto& words : workingCommands()) {
+        const std::string command = pellucid::joined(words, R"(\\ )"); // blanks that keep the words together
         INFO(command);
         CHECK(std::regex_search(manual, std::regex("\n\\.BI? " + command + "\\b")));
-        known.merge(optionsIn(w.run({command, "--help"}).out));
+        known.merge(optionsIn(w.run(withHelp(words)).out));
     }
     CHECK(optionsIn(manual) == known);
 }
@@ -200,6 +226,10 @@ TEST_CASE("bash completes commands, options, values and samples", "[cli][documen
     CHECK(completions("pellucid-cli optimize sample:shells --view be") == std::set<std::string>{"best"});
     CHECK(completions("pellucid-cli render sample:shells --view be").empty());
     CHECK(completions("pellucid-cli render sample:shells --annotate le") == std::set<std::string>{"legend", "letters"});
+    CHECK(completions("pellucid-cli study pr") == std::set<std::string>{"prepare"});
+    CHECK(completions("pellucid-cli study run x --part") == std::set<std::string>{"--participant"});
+    CHECK(completions("pellucid-cli study run x --measure v") == std::set<std::string>{"visibility", "vws"});
+    CHECK(completions("pellucid-cli study prepare x --engine c") == std::set<std::string>{"cpu"});
     CHECK(completions("pellucid-cli bench --only s") ==
           std::set<std::string>{"saliency", "saliency-direct", "setup", "slices", "sweep"});
 }

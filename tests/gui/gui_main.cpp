@@ -3,14 +3,20 @@
 #include <catch2/catch.hpp>
 
 #include <cstdio>
+#include <string_view>
 
 #include <QApplication>
 #include <QSettings>
 #include <QTemporaryDir>
 
+#include "play_study.h"
 #include "widgets/theme.h"
 
 int main(int argc, char** argv) {
+    if (argc == 4 && std::string_view(argv[1]) == pellucid::gui::kPlayStudy) {
+        const QApplication application(argc, argv);
+        return pellucid::gui::playStudy(argv[2], argv[3]);
+    }
     Catch::Session session;
     if (const int wrong = session.applyCommandLine(argc, argv); wrong != 0) return wrong;
     const Catch::ConfigData& data = session.configData();

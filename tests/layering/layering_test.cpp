@@ -28,21 +28,25 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/engines", {"base", "volume", "tf", "saliency", "render"}},
     {"src/bench", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/session", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
-    {"src/report", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
+    {"src/study", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
+    {"src/report",
+     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study"}},
     {"app/cli",
-     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "bench", "session", "report",
-      "cli"}},
+     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "bench", "session", "study",
+      "report", "cli"}},
     {"app/gui",
-     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "report", "gui"}},
+     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study", "report",
+      "gui"}},
     {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
-const std::set<std::string> kOurFolders{"base",    "volume", "tf",      "saliency", "render", "image_io", "optimize",
-                                        "engines", "bench",  "session", "report",   "cli",    "gui",      "gpu_check"};
+const std::set<std::string> kOurFolders{"base",     "volume",   "tf",      "saliency", "render",
+                                        "image_io", "optimize", "engines", "bench",    "session",
+                                        "study",    "report",   "cli",     "gui",      "gpu_check"};
 
 /// The folders of app/gui: each may include those before its row, and itself. What lies beside them, main.cpp, all.
-const std::vector<std::set<std::string>> kGuiRows{{"jobs"},       {"store"},    {"widgets"},
-                                                  {"dialogs"},    {"services"}, {"controllers"},
-                                                  {"view", "tf"}, {"panels"},   {"window"}};
+const std::vector<std::set<std::string>> kGuiRows{{"jobs"},   {"store"},    {"widgets"},     {"dialogs"},
+                                                  {"runner"}, {"services"}, {"controllers"}, {"view", "tf"},
+                                                  {"panels"}, {"window"}};
 
 struct Include {
     std::string file; ///< relative to the sources' top

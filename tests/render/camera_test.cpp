@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "render/camera.h"
 #include "render/ray_box.h"
+#include "render/view_text.h"
 #include "support/volumes.h"
 
 using namespace pellucid;
@@ -95,4 +96,21 @@ TEST_CASE("cameras that cannot see are refused", "[camera]") {
     CHECK_THROWS_WITH(cameraFromJson(j, "c.json"), Catch::Contains("/eye"));
     j["projection"] = "fisheye";
     CHECK_THROWS_AS(cameraFromJson(j, "c.json"), Error);
+}
+
+TEST_CASE("a view in words is angles or a side, with a zoom", "[camera]") {
+    const auto angles = [](const std::string& text) { return std::get<ViewAngles>(viewFromText(text)); };
+    CHECK(angles("30,-20").azimuth == 30);
+    CHECK(angles("30,-20").elevation == -20);
+    CHECK(angles("30,-20").zoom == 1);
+    CHECK(angles("0,0,2.5").zoom == 2.5);
+    const auto side = std::get<NamedView>(viewFromText("posterior,3"));
+    CHECK(side.view == StandardView::Back);
+    CHECK(side.ofPatient);
+    CHECK(side.zoom == 3);
+    for (const char* wrong :
+         {"", "1", "1,2,3,4", "0,91", "nan,0", "0,0,0", "0,0,1e7", "up", "front,0", "front,1,2", "1,,2"}) {
+        INFO(wrong);
+        CHECK_THROWS_AS(viewFromText(wrong), UsageError);
+    }
 }

@@ -10,6 +10,7 @@
 #include "render/feature_pictures.h"
 #include "render/ssim.h"
 #include "report/html_report.h"
+#include "report/page_parts.h"
 #include "report/report.h"
 #include "run_support.h"
 #include "session/session_json.h"

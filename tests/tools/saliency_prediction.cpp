@@ -31,7 +31,7 @@ struct Figures {
         std::printf("%-24s %4zu pairs", title.c_str(), picture.size());
         for (const auto& [name, values] : {std::pair{"VWS", &vws}, std::pair{"FV", &visibility}}) {
             const Correlation c = correlation(CorrelationKind::Spearman, *values, picture);
-            std::printf("   %s %.3f (%.3f to %.3f), p %.1e", name, c.value, c.low, c.high, c.p);
+            std::printf("   %s %.3f (%.3f to %.3f), p %.1e", name, c.value, c.interval.low, c.interval.high, c.p);
         }
         std::printf("\n");
         std::fflush(stdout);

@@ -29,6 +29,7 @@ Controllers::Controllers(Services& all) : services(all) {
     // The menus stand in the order in which their first actions come.
     opening.addActions();
     saving.addActions();
+    studies.addActions();
     addEditActions(services);
     starting.addActions();
     features.addActions();
@@ -70,6 +71,7 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(fields, &FieldController::busyChanged);
     watch(pictureSaliency, &PictureSaliencyController::busyChanged);
     watch(player, &PlayerController::changed);
+    watch(studies, &StudyController::busyChanged);
     watch(adapting, &AdaptController::changed);
 }
 

@@ -14,6 +14,7 @@
 #include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
 #include "controllers/start_controller.h"
+#include "controllers/study_controller.h"
 #include "controllers/target_actions.h"
 #include "controllers/view_search_controller.h"
 
@@ -38,6 +39,7 @@ struct Controllers {
     AdaptController adapting{services, player}; ///< transfer functions over time
     ViewSearchController views{services, optimizing};
     ProbeController probe{services};
+    StudyController studies{services};
     TargetActions targets{services};
     FeatureActions features{services, targets};
     QAction* clipHandles = nullptr;

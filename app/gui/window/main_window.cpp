@@ -86,7 +86,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     addHelpActions();
     m_services->actions().build(*this);
     m_controllers->opening.updateRecentFiles();
-    new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, *m_view, *statusBar());
+    new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, m_controllers->studies, *m_view,
+                   *statusBar());
 
     connect(m_view, &VolumeView::pictureShown, this, [this] {
         const PictureInfo& picture = m_view->picture();

@@ -4,6 +4,7 @@
 
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
+#include "controllers/study_controller.h"
 #include "render/camera_motion.h"
 #include "services/services.h"
 #include "view/volume_view.h"
@@ -18,10 +19,10 @@ constexpr int kMessageTime = 4000; // milliseconds
 
 } // namespace
 
-StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, VolumeView& view,
-                       QStatusBar& bar)
-    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_view(view), m_bar(bar),
-      m_volume(named(new QLabel(&bar), "volumeLabel")),
+StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, StudyController& studies,
+                       VolumeView& view, QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_studies(studies), m_view(view),
+      m_bar(bar), m_volume(named(new QLabel(&bar), "volumeLabel")),
       m_camera(named(new QLabel(&bar), "cameraLabel",
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
@@ -35,9 +36,10 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     bar.addWidget(m_cancel);
     for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
 
-    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving] {
+    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &studies] {
         opening.cancel();
         saving.cancel();
+        studies.cancel();
     });
     const auto watch = [this](auto& controller) {
         using Controller = std::remove_reference_t<decltype(controller)>;
@@ -51,6 +53,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     };
     watch(opening);
     watch(saving);
+    watch(studies);
     connect(&services, &Services::message, this,
             [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
     connect(&services.store(), &SessionStore::changed, this, &StatusLine::followScene);
@@ -115,8 +118,9 @@ void StatusLine::followFigures() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_opening.isBusy(), busy = opening || m_saving.isBusy();
-    const QString text = opening ? m_opening.busyText() : m_saving.busyText();
+    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy();
+    const bool busy = opening || saving || m_studies.isBusy();
+    const QString text = opening ? m_opening.busyText() : saving ? m_saving.busyText() : m_studies.busyText();
     if (busy && (m_cancel->isHidden() || text != m_background->text())) m_progress->setRange(0, 0);
     m_background->setText(text);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})

@@ -14,11 +14,13 @@ class VolumeView;
 class OpenController;
 class SaveController;
 class Services;
+class StudyController;
 
 class StatusLine : public QObject {
     Q_OBJECT
 public:
-    StatusLine(Services& services, OpenController& opening, SaveController& saving, VolumeView& view, QStatusBar& bar);
+    StatusLine(Services& services, OpenController& opening, SaveController& saving, StudyController& studies,
+               VolumeView& view, QStatusBar& bar);
 
 private:
     void followScene();
@@ -29,6 +31,7 @@ private:
     Services& m_services;
     OpenController& m_opening;
     SaveController& m_saving;
+    StudyController& m_studies;
     VolumeView& m_view;
     QStatusBar& m_bar;
     QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background;
