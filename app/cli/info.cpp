@@ -144,6 +144,7 @@ Command addInfo(CLI::App& program) {
     CLI::App* app = program.add_subcommand("info", "What a volume holds: size, type, spacing, range, invalid voxels");
     const auto options = std::make_shared<SceneOptions>();
     options->addForData(*app);
+    options->engine.addDefinitions(*app);
     return {app, [options](Progress& progress) {
                 const Opened opened = resolve(*options, progress, {.use = {}, .byEngine = false, .needsTf = false});
                 TimeSeries& series = *opened.scene.series;
@@ -155,6 +156,10 @@ Command addInfo(CLI::App& program) {
                     answer.json["arrays"] = contents.arrays;
                     answer.text += listing({{"arrays", joined(contents.arrays)}});
                 }
+                const Json definitions = definitionsOf(opened.scene.session);
+                if (!definitions.empty()) answer.json["definitions"] = definitions;
+                for (const auto& [name, words] : definitions.items())
+                    answer.text += listing({{name, words.get<std::string>()}});
                 if (series.varies()) {
                     answer.text += framesText(opened.scene);
                     answer.json["frames"] = framesJson(opened.scene);

@@ -168,6 +168,7 @@ Command addRender(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     o->scene.engine.add(*app);
+    o->scene.engine.addDefinitions(*app);
     addOutputFile(*app, "--out", o->out, "the picture to write: .png, .tif, .exr or .jpg", checkImageSuffix)
         ->required();
     o->scene.picture.add(*app);

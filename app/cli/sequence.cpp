@@ -15,6 +15,7 @@
 #include "interrupt.h"
 #include "movie.h"
 #include "optimize/answer/visibility_words.h"
+#include "options/priority_options.h"
 #include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
@@ -26,6 +27,7 @@
 #include "report/temporal_curves.h"
 #include "resolve.h"
 #include "session/frame_figures.h"
+#include "session/refine_priority.h"
 #include "session/scene_data.h"
 #include "session/sequence.h"
 #include "tf/formats/tf_json.h"
@@ -43,6 +45,8 @@ struct Options {
     SceneOptions scene;
     SettingOptions<AdaptSettings> adapt;
     SettingOptions<OptimizeOptions> search;
+    SettingOptions<RefineSteps> steps;
+    PriorityOptions priority;
     std::optional<TargetInput> targets;
     std::optional<int> from;
     bool compare = false, requireConverged = false, noPictures = false, overGaps = false;
@@ -81,7 +85,20 @@ void check(const Options& o) {
              "--background transparent", "give a colour"},
             {o.framesPerSecond && !o.movie, "--fps needs --mp4", "--fps", "add --mp4 FILE, or leave out --fps"},
             {o.movie && o.noPictures, "--mp4 needs the pictures", "--no-pictures", "leave out one of the two"}});
+    o.priority.check(o.scene.picture.size);
     if (o.movie) requireMovieWriter();
+}
+
+/// Refuses options of refinement in another mode.
+void checkRefining(const Options& o, const Session& session) {
+    const char* priority = o.priority.given();
+    if (session.adapt->mode == Mode::Refine) return requireOwnSteps(session.measure->profile, o.steps);
+    const std::string of = priority != nullptr        ? priority
+                           : !o.steps.given().empty() ? o.steps.given().front()->optionName()
+                                                      : std::string();
+    if (!of.empty())
+        throw UsageError("transfer functions are refined only in the mode refine", of,
+                         "add --mode refine, or leave it out");
 }
 
 /// The frame that is read while others are computed.
@@ -149,6 +166,7 @@ private:
     std::map<int, AdaptedFrame> m_planned;             ///< of plan(), by frame: the session has what is drawn
     std::vector<FrameFigures> m_figures, m_static;
     std::vector<int> m_afterGaps; ///< frames whose flicker is not told
+    Json m_priority;              ///< that of the first frame that was refined
     FrameFigures m_broken;        ///< of the latest frame that next() could not read
     std::vector<std::string> m_notices;
     std::vector<Json> m_frames;
@@ -162,6 +180,11 @@ void Sequence::prepareKey() {
     m_start = session.frame;
     session.adapt.edit([&](AdaptSettings& a) { m_o.adapt.applyTo(a); });
     session.optimize.edit([&](OptimizeOptions& options) { m_o.search.applyTo(options); });
+    checkRefining(m_o, session);
+    session.refine.edit([&](RefineSettings& settings) {
+        m_o.steps.applyTo(settings);
+        m_o.priority.applyTo(settings, m_o.scene.picture.size);
+    });
     if (m_o.targets) {
         const std::vector<double> targets = atOption(
             "--target", [&] { return normalizedTargets(m_o.targets->of(m_scene), m_scene.tf.features.size()); });
@@ -257,6 +280,15 @@ Json Sequence::jsonOf(const Frame& frame) const {
         json["moves"] = *f.moves;
         json["seconds"] = f.seconds;
     }
+    if (frame.made && frame.made->energy) {
+        const RefineEnergies& energy = *frame.made->energy;
+        json["energy_before"] = energy.before;
+        json["energy_after"] = energy.after;
+        json["energy_movable_before"] = energy.movableBefore;
+        json["energy_movable_after"] = energy.movableAfter;
+        if (m_scene.session.refine->hue) // whose intensity may be another one where voxels have colours of their own
+            json["priority"] = m_o.priority.told(*m_scene.session.refine, frame.made->priority);
+    }
     if (m_o.compare)
         json["static"] = {{"vws", frame.staticFigures.vws},
                           {"visibility", frame.staticFigures.visibility},
@@ -276,6 +308,7 @@ void Sequence::finish(std::vector<Frame>& batch) {
         if (frame.made) {
             frame.figures.moves = frame.made->moves;
             frame.figures.seconds = frame.made->seconds;
+            if (frame.made->energy) frame.figures.energy = frame.made->energy->movableAfter;
         }
         if (m_o.compare) {
             frame.staticFigures = figuresOf(frame.asStatic, nullptr, workspace, job);
@@ -301,6 +334,8 @@ void Sequence::finish(std::vector<Frame>& batch) {
         if (m_o.compare) draw(frame.asStatic, kStaticSuffix, frame.staticFigures);
     });
     for (const Frame& frame : batch) {
+        if (m_priority.is_null() && frame.made && frame.made->energy)
+            m_priority = m_o.priority.told(*m_scene.session.refine, frame.made->priority);
         m_frames.push_back(jsonOf(frame));
         m_figures.push_back(frame.figures);
         if (m_o.compare) m_static.push_back(frame.staticFigures);
@@ -363,12 +398,19 @@ void Sequence::tellMissed(const SequenceFigures& figures) {
 std::string coherenceText(double coherence) { return std::isinf(coherence) ? "infinite" : plainText(coherence); }
 
 std::string Sequence::text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const {
-    Table table({"frame", "F", "flicker", "moves", "seconds"});
-    for (const FrameFigures& f : m_figures)
-        table.add({std::to_string(f.frame), f.problem.empty() ? fixedText(f.objective, 4) : "broken",
-                   f.flicker ? fixedText(*f.flicker, 3) : "-", f.moves ? std::to_string(*f.moves) : "-",
-                   f.moves ? fixedText(f.seconds, 3) : "-"});
+    const bool refines = settings().mode == Mode::Refine;
+    std::vector<std::string> columns{"frame", "F", "flicker", "moves", "seconds"};
+    if (refines) columns.emplace_back("energy");
+    Table table(columns);
+    for (const FrameFigures& f : m_figures) {
+        std::vector<std::string> row{std::to_string(f.frame), f.problem.empty() ? fixedText(f.objective, 4) : "broken",
+                                     f.flicker ? fixedText(*f.flicker, 3) : "-",
+                                     f.moves ? std::to_string(*f.moves) : "-", f.moves ? fixedText(f.seconds, 3) : "-"};
+        if (refines) row.push_back(f.energy ? plainText(*f.energy) : "-");
+        table.add(row);
+    }
     std::string text = table.text() + name(settings().mode);
+    if (refines) text += ", priority " + textOfPriority(m_priority) + profileText(*m_scene.session.measure);
     if (settings().mode != Mode::Static) text += ", coherence " + coherenceText(settings().usedCoherence());
     text += ": RMS of F " + fixedText(dynamic.rms, 4) + " (largest " + fixedText(dynamic.worstObjective, 4) +
             ", frame " + std::to_string(dynamic.worst) + "), flicker " + fixedText(dynamic.flicker, 3) + " on average";
@@ -390,6 +432,8 @@ Json Sequence::json(const SequenceFigures& dynamic, const std::optional<Sequence
         const double coherence = settings().usedCoherence();
         json["coherence"] = std::isinf(coherence) ? Json("infinite") : Json(coherence);
     }
+    if (settings().mode == Mode::Refine) json["priority"] = m_priority;
+    addProfile(json, *m_scene.session.measure);
     json["volume"] = jsonFromVolume(*m_scene.volume);
     addMapping(json, m_scene);
     json["from"] = m_start;
@@ -437,6 +481,8 @@ Answer Sequence::run(const Opened& opened) {
         job.report((number + 1.0 - m_start) / (series.size() - m_start));
     }
     finish(batch);
+    if (m_priority.is_null() && settings().mode == Mode::Refine) // all frames were refined before
+        m_priority = m_o.priority.told(*m_scene.session.refine, refinePriority(m_scene, {interruptToken(), {}}));
     if (m_frames.empty()) throw Error("no frame can be read", series.listing().title, "check its files");
 
     m_progress.phase("writing");
@@ -486,8 +532,10 @@ Command addSequence(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "sequence", "Draws and measures the frames of a series, each under a transfer function that may follow them");
     const auto o = std::make_shared<Options>();
-    o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
+    o->scene.addForFigures(*app, VolumeOptions::SizeIs::ImageWithRegion);
     o->adapt.add(*app);
+    o->priority.add(*app, o->scene.volume);
+    o->steps.add(*app);
     addValue(
         *app, "--target", kTargetForms, o->targets, TargetInput::parse,
         "shares of attention, as in optimize; the first frame's transfer function is optimized to them, in every mode");

@@ -99,6 +99,12 @@ bool TemporalCurves::hasPictures() const {
     });
 }
 
+bool TemporalCurves::hasEnergies() const {
+    return std::ranges::any_of(runs, [](const TemporalRun& run) {
+        return std::ranges::any_of(run.frames, [](const FrameFigures& f) { return f.energy.has_value(); });
+    });
+}
+
 Plot temporalVwsPlot(const TemporalCurves& curves, std::size_t run, double highest) {
     Plot plot = plotOf(curves, titled(curves, "Visibility-weighted saliency", run), "VWS");
     addFeatures(plot, curves, run, &FrameFigures::vws);
@@ -161,6 +167,7 @@ std::vector<Plot> temporalPlots(const TemporalCurves& curves) {
 std::string csvOf(const TemporalCurves& curves) {
     CsvTable csv;
     for (const char* column : {"run", "frame", "file", "time", "F", "flicker", "moves", "seconds"}) csv << column;
+    if (curves.hasEnergies()) csv << "energy";
     using Values = std::vector<double> FrameFigures::*;
     std::vector<std::pair<const char*, Values>> columns{{"VWS ", &FrameFigures::vws},
                                                         {"target ", &FrameFigures::targets},
@@ -176,6 +183,7 @@ std::string csvOf(const TemporalCurves& curves) {
             const auto when = [](bool known, double value) { return known ? std::optional(value) : std::nullopt; };
             csv << run.name << f.frame << f.file << f.time << when(f.problem.empty(), f.objective) << f.flicker
                 << f.moves << when(f.moves.has_value(), f.seconds);
+            if (curves.hasEnergies()) csv << f.energy;
             for (std::size_t i = 0; i < curves.features.size(); ++i)
                 for (const auto& [what, values] : columns) csv << at(f.*values, i);
             csv << f.problem;

@@ -23,6 +23,7 @@ struct TemporalCurves {
     int present = -1;              ///< a frame that is pointed out; −1: none
     bool empty() const;            ///< no frame could be read
     bool hasPictures() const;      ///< of some frame 2D feature saliency is known
+    bool hasEnergies() const;      ///< some frame was refined
 };
 
 /// VWS of each feature in its colour over the frames of one run, targets dashed. Frames that cannot be read are gaps.
@@ -42,9 +43,10 @@ Plot temporalFlickerPlot(const TemporalCurves& curves);
 /// All of them: VWS of each run with a common axis, F, flicker, then FV, 2D feature saliency and opacities of each run.
 std::vector<Plot> temporalPlots(const TemporalCurves& curves);
 
-/// A line per frame of each run: run, frame, file, time, F, flicker, moves, seconds, then for each feature its VWS, its
-/// target, its FV, its opacity and, where hasPictures(), its 2DFS, and why the frame could not be read. What is not
-/// known is empty. Numbers with all their digits.
+/// A line per frame of each run: run, frame, file, time, F, flicker, moves, seconds, where hasEnergies() the energy
+/// that a refinement has left over the movable edges, then for each feature its VWS, its target, its FV, its opacity
+/// and, where hasPictures(), its 2DFS, and why the frame could not be read. What is not known is empty. Numbers with
+/// all their digits.
 std::string csvOf(const TemporalCurves& curves);
 
 } // namespace pellucid

@@ -96,6 +96,7 @@ public:
         if (mode == Mode::Refine) {
             common.refine = session.refine;
             common.refine.edit([](RefineSettings& r) { r.live = false; });
+            common.measure.edit([&](MeasureSettings& m) { m.profile = session.measure->profile; });
         }
         if (viewed) {
             common.camera = session.camera;
@@ -105,7 +106,8 @@ public:
             common.measure = session.measure;
             common.optimize = session.optimize;
         }
-        const bool coloured = viewed && session.hsb->on; // what is measured, and what a region shows
+        const bool hued = mode == Mode::Refine && session.refine->hue;
+        const bool coloured = (viewed || hued) && session.hsb->on; // what is measured, what a region or a hue shows
         if (coloured) common.hsb = session.hsb;
         m_common.add(jsonFromSession(common, "", DataPaths::Absolute).dump());
         const std::size_t variables = coloured ? session.variables->size() : 1;
@@ -122,7 +124,7 @@ public:
         const bool others = variables > 1 || session.variable().derivation.has_value();
         if (!session.variable().window || others)
             for (const SeriesFrame& frame : series.listing().frames) addSource(m_common, frame.source);
-        m_needsKey = mode == Mode::Refine && session.refine->region.has_value();
+        m_needsKey = mode == Mode::Refine && (session.refine->region || session.refine->hue);
     }
 
     std::string of(int frame, const TransferFunction& previous) const {

@@ -21,7 +21,8 @@ struct AdaptTask {
 
 /// Text that is the same exactly where a frame's adapted transfer function would be: a hash of the frame's data, their
 /// window, the transfer function it starts from, AdaptSettings, and of what its mode depends on: settings of refinement
-/// (and, where a region is favoured, the view, clipping and the key's transfer function), or targets of this frame,
+/// and its profile (where a region or a hue is favoured, the key's transfer function and the colours of several
+/// variables, of a region the view and clipping, too), or targets of this frame,
 /// limits, settings of optimization and measuring, view, clipping and colours of several variables. Files count by
 /// their names and sizes, so that a session can be moved. `session` is any frame's.
 std::string frameFingerprint(const Session& session, const TimeSeries& series, int frame,

@@ -7,10 +7,9 @@
 #include "base/stopwatch.h"
 #include "engines/engines.h"
 #include "optimize/refine/drawn_colors.h"
-#include "optimize/refine/refine_features.h"
-#include "optimize/refine/region_colors.h"
 #include "optimize/solve/log_depths.h"
 #include "optimize/time/tracking.h"
+#include "session/refine_priority.h"
 #include "session/scene_data.h"
 #include "tf/color_difference.h"
 #include "tf/opacity.h"
@@ -23,8 +22,7 @@ namespace {
 
 using Mode = AdaptSettings::Mode;
 
-constexpr int kRegionSize = 512;    ///< pixels of the side of the picture that a favoured region is of
-constexpr int kMetricSize = 96;     ///< likewise, of pictures that tell how much they change
+constexpr int kMetricSize = 96;     ///< pixels of the side of pictures that tell how much they change
 constexpr double kMetricStep = 0.1; ///< of ln τ
 constexpr double kUnseen = 0.03;    ///< of the mean change, that even a feature counts which is not seen
 constexpr int kMovesAnew = 12;      ///< of the search where a frame is off target
@@ -160,25 +158,36 @@ Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const J
     return scene;
 }
 
-RefinePriority FrameAdapter::priorityOf(const Scene& basis, const AdaptTask& task, const JobControl& job) {
+const std::vector<RegionColor>& FrameAdapter::regionOf(const Scene& basis, const AdaptTask& task,
+                                                       const JobControl& job) {
     const RefineSettings& settings = *basis.session.refine;
-    RefinePriority priority;
-    priority.intensity = settings.intensity;
-    if (settings.intensity || !settings.region) return priority;
-    // The colours that somebody has chosen are those of the key frame, whatever lies there later.
     const auto& key = *basis.session.variable().track.keys.at(task.key);
     const std::string wanted = frameFingerprint(basis.session, *basis.series, task.key, key);
     if (m_regionBasis != wanted) {
         m_regionBasis.clear();
-        const Scene scene = sceneAt(basis, task.key, key, job);
-        const PictureInput picture = plainPictureInput(scene, kRegionSize, kRegionSize);
-        // Always by the cpu renderer: the same answer on every machine.
-        const Image image = makeCpuRenderer(picture.volume)->render(picture.camera, picture.tf, picture.settings, job);
-        m_colors = regionColors(image, *settings.region);
+        m_colors = regionColors(sceneAt(basis, task.key, key, job), *settings.region, regionPictureSize(settings), job);
         m_regionBasis = wanted;
     }
-    priority.region = m_colors;
-    return priority;
+    return m_colors;
+}
+
+void FrameAdapter::refine(const Scene& frame, const Scene& basis, const AdaptTask& task, AdaptedFrame& made,
+                          const JobControl& job) {
+    made.tf = frame.tf;
+    if (std::isinf(basis.session.adapt->usedCoherence())) return;
+    const RefineSettings& settings = *basis.session.refine;
+    RefineOptions options = refineOptions(basis.session);
+    if (settings.region) options.priority.region = m_colors;
+    options.priority.intensity = settings.intensity;
+    // The key's opacities say which of equal hues is meant: those of the frames before may cross.
+    if (settings.hue)
+        options.priority = huePriority(
+            frame, writtenFor(*basis.session.variable().track.keys.at(task.key), frame.volume->range()), *settings.hue);
+    RefineResult result = refineAsDrawn(*frame.histogram, frame.tf, *frame.volume, frame.colors.get(), options, job);
+    made.tf = std::move(result.tf);
+    made.energy = {result.energyBefore, result.energyAfter, result.energyMovableBefore, result.energyMovableAfter};
+    made.moves = result.iterations;
+    made.priority = std::move(options.priority);
 }
 
 AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Workspace& workspace,
@@ -190,19 +199,10 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
     made.frame = task.frame;
     made.basis = task.basis;
     made.tf = task.previous;
-    const RefinePriority priority = settings.mode == Mode::Refine ? priorityOf(basis, task, quiet) : RefinePriority{};
+    if (settings.mode == Mode::Refine && basis.session.refine->region) regionOf(basis, task, quiet);
     Scene scene = sceneAt(basis, task.frame, task.previous, quiet);
     if (settings.mode == Mode::Refine) {
-        RefineOptions options = basis.session.refine->options();
-        options.priority = priority;
-        made.tf = scene.tf;
-        if (!std::isinf(settings.usedCoherence())) {
-            RefineResult result =
-                refineAsDrawn(*scene.histogram, scene.tf, *scene.volume, scene.colors.get(), options, quiet);
-            made.tf = std::move(result.tf);
-            made.energy = result.energyMovableAfter;
-            made.moves = result.iterations;
-        }
+        refine(scene, basis, task, made, quiet);
     } else if (settings.mode == Mode::Optimize && isAimed(scene.targets())) { // else nothing of it is in the frame
         const MeasureInput input = measureInput(scene);
         const std::vector<double> targets = scene.targets();

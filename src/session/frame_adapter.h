@@ -17,16 +17,23 @@ namespace pellucid {
 /// that frame, no data is read. Throws as resolve() does.
 Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const JobControl& job = {});
 
+/// What a refinement did to the energies (docs/method.md, "Entropy refinement").
+struct RefineEnergies {
+    double before = 0, after = 0;               ///< over all edges
+    double movableBefore = 0, movableAfter = 0; ///< over those that take part, decides
+};
+
 /// What was made for a frame.
 struct AdaptedFrame {
     int frame = 0;
-    TransferFunction tf;             ///< written for the scene's window, features with their identities
-    std::string basis;               ///< that of the task
-    std::optional<double> energy;    ///< of a refinement: the movable energy after it
-    std::vector<double> vws;         ///< of an optimization: W, per feature
-    std::optional<double> objective; ///< of an optimization: F
-    int moves = 0;                   ///< of an optimization; iterations of a refinement
-    double seconds = 0;              ///< reading included
+    TransferFunction tf;                  ///< written for the scene's window, features with their identities
+    std::string basis;                    ///< that of the task
+    std::optional<RefineEnergies> energy; ///< of a refinement
+    RefinePriority priority;              ///< of a refinement: what it brought out
+    std::vector<double> vws;              ///< of an optimization: W, per feature
+    std::optional<double> objective;      ///< of an optimization: F
+    int moves = 0;                        ///< of an optimization; iterations of a refinement
+    double seconds = 0;                   ///< reading included
     AdaptedTf forTrack() const { return {Part<TransferFunction>(tf), basis}; }
 };
 
@@ -58,7 +65,10 @@ private:
         std::string basis; ///< of the transfer function that the model is of
         FrameModel model;
     };
-    RefinePriority priorityOf(const Scene& basis, const AdaptTask& task, const JobControl& job);
+    /// Those of the task's key frame, whatever lies there later.
+    const std::vector<RegionColor>& regionOf(const Scene& basis, const AdaptTask& task, const JobControl& job);
+    void refine(const Scene& frame, const Scene& basis, const AdaptTask& task, AdaptedFrame& made,
+                const JobControl& job);
 
     std::string m_regionBasis; ///< what m_colors were taken from
     std::vector<RegionColor> m_colors;

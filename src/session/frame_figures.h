@@ -25,6 +25,7 @@ struct FrameFigures {
     std::optional<double> flicker;  ///< mean ΔE to the same frame under the transfer function of neighbourBefore()
     std::optional<int> moves;       ///< that its transfer function took; empty: none was made for it
     double seconds = 0;             ///< likewise, reading included
+    std::optional<double> energy;   ///< that a refinement has left over the movable edges; empty: none was made for it
 };
 
 /// The frame that flicker of `frame` compares it with: the one before, where it can be read as far as is known and no

@@ -99,10 +99,26 @@ Session sessionOf(const VolumeSource& source) {
     return session;
 }
 
+namespace {
+
+/// Whether the values of the variable are a volatility, or made of one.
+bool isVolatile(const Session& session, const Variable& variable) {
+    std::optional<Derivation> derivation = variable.derivation;
+    for (int depth = 0; derivation && depth < 100; ++depth) { // a damaged file may go round in circles
+        if (derivation->kind == Derivation::Kind::Volatility) return true;
+        const Variable* of = session.variableNamed(derivation->of);
+        derivation = of != nullptr ? of->derivation : parseDerivation(derivation->of);
+    }
+    return false;
+}
+
+} // namespace
+
 bool needsData(const Session& session, const Scene& basis) {
     if (session.isEmpty() || basis.data == nullptr) return !session.isEmpty();
     const Variable &now = session.variable(), &before = basis.session.variable();
     if (!sameOrigin(now, before)) return true;
+    if (volatilityKind(session) != volatilityKind(basis.session) && isVolatile(session, now)) return true;
     const int frame = basis.series->nearest(session.frame);
     if (frame != basis.session.frame) return !basis.series->isShown(frame, now.window);
     if (now.window == before.window) return false;

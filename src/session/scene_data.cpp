@@ -7,6 +7,10 @@
 
 namespace pellucid {
 
+VolatilityKind volatilityKind(const Session& session) {
+    return session.measure->profile == Profile::Published ? VolatilityKind::Published : VolatilityKind::Population;
+}
+
 bool sameOrigin(const Variable& a, const Variable& b) {
     return a.derivation == b.derivation && (a.derivation || a.source == b.source);
 }
@@ -78,11 +82,14 @@ std::shared_ptr<TimeSeries> SeriesFinder::knownOf(const std::string& name) const
 
 std::shared_ptr<TimeSeries> SeriesFinder::derived(const std::string& name, const Derivation& derivation) {
     std::shared_ptr<TimeSeries> base = find(derivation.of);
-    if (const auto before = knownOf(name); before && knownOf(derivation.of) == base) {
+    const VolatilityKind kind = volatilityKind(m_scene.session);
+    const bool sameKind = derivation.kind != Derivation::Kind::Volatility || m_basis.session.isEmpty() ||
+                          kind == volatilityKind(m_basis.session);
+    if (const auto before = sameKind ? knownOf(name) : nullptr; before && knownOf(derivation.of) == base) {
         const Variable* variable = m_basis.session.variableNamed(name);
         if (variable == nullptr || variable->derivation == derivation) return before;
     }
-    return derive(std::move(base), derivation, m_job);
+    return derive(std::move(base), derivation, m_job, kind);
 }
 
 bool SeriesFinder::isKnown(const Variable& variable) const {
@@ -166,6 +173,9 @@ std::shared_ptr<const Volume> channelOf(Scene& scene, SeriesFinder& finder, cons
     // Volatility is a deviation of intensities: it is its own measure.
     if (!window && derivation && derivation->kind == Derivation::Kind::Volatility) window = ValueRange{0, 1};
     std::shared_ptr<const Volume> volume = series->load(series->nearest(scene.session.frame), job);
+    // Published, each frame is normalised by itself.
+    if (!window && scene.session.measure->profile == Profile::Published && !volume->isConstant())
+        window = volume->dataRange();
     if (!onSameGrid(volume->geometry(), scene.volume->geometry()))
         volume = std::make_shared<const Volume>(resampledTo(*volume, scene.volume->geometry(), job));
     if (!window) window = series->range(job);
@@ -175,6 +185,7 @@ std::shared_ptr<const Volume> channelOf(Scene& scene, SeriesFinder& finder, cons
 /// Whether colours, and what they are made of, are those of `basis`.
 bool sameColors(const Scene& scene, const Scene& basis) {
     return scene.data == basis.data && scene.session.hsb == basis.session.hsb &&
+           scene.session.measure->profile == basis.session.measure->profile &&
            sameData(*scene.session.variables, *basis.session.variables);
 }
 
@@ -197,6 +208,7 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
     input.hue = channelOf(scene, finder, hsb.hue, job);
     // Automatic scales stay what they were when the mapping began.
     HsbMapping::Found found{hsb.saturation, hsb.brightness, {}, {}};
+    const bool sameKind = basis.session.isEmpty() || volatilityKind(scene.session) == volatilityKind(basis.session);
     const auto scale = [&](const std::optional<double>& set, bool isKnown, const std::optional<double>& before,
                            const std::shared_ptr<const Volume>& v, std::optional<double>& now) {
         if (set || !v) return set.value_or(1);
@@ -204,8 +216,8 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
         return now.value_or(1); // nothing there yet, as with the first frame's volatility: found later
     };
     const HsbMapping::Found& was = hsb.found;
-    scene.hsbA = input.a = scale(hsb.a, was.saturation == hsb.saturation, was.a, input.saturation, found.a);
-    scene.hsbB = input.b = scale(hsb.b, was.brightness == hsb.brightness, was.b, input.brightness, found.b);
+    scene.hsbA = input.a = scale(hsb.a, sameKind && was.saturation == hsb.saturation, was.a, input.saturation, found.a);
+    scene.hsbB = input.b = scale(hsb.b, sameKind && was.brightness == hsb.brightness, was.b, input.brightness, found.b);
     input.hueFrom = hsb.hueFrom;
     input.hueTo = hsb.hueTo;
     scene.colors = std::make_shared<const VoxelColors>(hsbColors(input, job));

@@ -9,6 +9,9 @@
 
 namespace pellucid {
 
+/// The definition of volatility that the session's profile has.
+VolatilityKind volatilityKind(const Session& session);
+
 /// Whether both variables have the same values, whatever they are called and seen through.
 bool sameOrigin(const Variable& a, const Variable& b);
 /// The same variables in the same order through the same windows, whatever their transfer functions are.

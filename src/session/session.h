@@ -1,6 +1,7 @@
 // All that a user has decided, as one value: what is shown, how it is shown, from where, and what it should become.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -181,13 +182,23 @@ struct MeasureSettings {
 template <>
 std::span<const Setting> settingsOf<MeasureSettings>(); ///< beside those of its parts
 
-/// How opacities are refined by entropy (docs/method.md, "Entropy refinement"), and what is favoured: one intensity, or
-/// the colours in a region of the picture, or (both empty) nothing. At most one of the two is set.
+/// How opacities are refined by entropy (docs/method.md, "Entropy refinement"), and what is favoured: one intensity,
+/// one hue, the colours in a region of the picture, or (all empty) nothing. At most one of the three is set.
 struct RefineSettings : RefineSteps {
-    bool live = false;                                              ///< after every edit, not only when asked for
-    std::optional<double> intensity = {};                           ///< [0,1]
-    std::optional<ImageRegion> region = {};                         ///< of the picture as the view shows it
-    RefineOptions options() const { return {*this, {}, true, {}}; } ///< without what is favoured
+    bool live = false;                      ///< after every edit, not only when asked for
+    std::optional<double> intensity = {};   ///< [0,1]
+    std::optional<double> hue = {};         ///< degrees, any real
+    std::optional<ImageRegion> region = {}; ///< of the picture as the view shows it
+    /// Pixels of the picture that the region's colours are of, width and height; 0: not known.
+    std::array<int, 2> regionSize = {0, 0};
+    RefineOptions options() const { return {*this, {}, true, {}, {}}; } ///< without what is favoured
+    bool favoursAny() const { return intensity || hue || region; }
+    void favourNothing() {
+        intensity.reset();
+        hue.reset();
+        region.reset();
+        regionSize = {0, 0};
+    }
     bool operator==(const RefineSettings&) const = default;
 };
 template <>

@@ -403,8 +403,10 @@ json fromRefine(const RefineSettings& r) {
     json j = from(r);
     putSettings<RefineSteps>(j, r);
     if (r.intensity) j["intensity"] = *r.intensity;
+    if (r.hue) j["hue"] = *r.hue;
     if (r.region)
         for (const glm::dvec2& corner : r.region->outline) j["region"].push_back({corner.x, corner.y});
+    if (r.region && r.regionSize[0] > 0) j["region_size"] = r.regionSize;
     return j;
 }
 
@@ -412,6 +414,7 @@ RefineSettings toRefine(const JsonValue& j) {
     auto r = to<RefineSettings>(j);
     takeSettings<RefineSteps>(j, r);
     if (j.has("intensity")) r.intensity = j["intensity"].number(0, 1);
+    if (j.has("hue")) r.hue = j["hue"].number();
     if (j.has("region")) {
         ImageRegion region;
         for (const JsonValue& corner : j["region"].items()) {
@@ -420,9 +423,14 @@ RefineSettings toRefine(const JsonValue& j) {
         }
         if (region.outline.size() < 3 || region.outline.size() > kMostCorners)
             j["region"].fail("an outline has 3 to 10000 corners");
-        if (r.intensity) j["region"].fail("an intensity and a region cannot both be favoured", "leave one");
         r.region = std::move(region);
     }
+    if (r.region && j.has("region_size")) {
+        const auto sides = j["region_size"].items(2);
+        for (std::size_t i = 0; i < 2; ++i) r.regionSize[i] = sides[i].whole(1, kMostPixels);
+    }
+    if ((r.intensity ? 1 : 0) + (r.hue ? 1 : 0) + (r.region ? 1 : 0) > 1)
+        j.fail("more than one of intensity, hue and region is favoured", "leave one");
     return r;
 }
 

@@ -23,9 +23,9 @@ std::span<const Setting> settingsOf<MeasureSettings>() {
         {.key = "profile",
          .at = member<&M::profile>,
          .words = "&Definitions",
-         .help = "The definitions of visibility, saliency and VWS. Published are those of the programs behind the "
-                 "thesis's printed numbers, with 8-bit opacities; they look along an axis of the grid and need no "
-                 "camera.",
+         .help = "The definitions of visibility, saliency, VWS, refinement and volatility. Published are those of the "
+                 "programs behind the thesis's printed numbers; they measure along an axis of the grid with 8-bit "
+                 "opacities and need no camera.",
          .choices = kProfiles},
         {.key = "along",
          .at = member<&M::along>,

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "session/scene_data.h"
 
 namespace pellucid {
 namespace {
@@ -188,6 +189,23 @@ void setChannel(Session& session, Channel channel, const std::string& name) {
 
 void swapOpacityAndBrightness(Session& session) {
     if (const std::string other = session.hsb->brightness; !other.empty()) setChannel(session, Channel::Opacity, other);
+}
+
+std::string definitionOf(const Session& session, const Derivation& derivation) {
+    const std::string &of = derivation.of, frames = std::to_string(derivation.frames);
+    const bool published = volatilityKind(session) == VolatilityKind::Published;
+    switch (derivation.kind) {
+    case Derivation::Kind::Gradient:
+        return "magnitude of the gradient of " + of + ", scaled to 0 to 1 over the series, per d0";
+    case Derivation::Kind::Volatility:
+        return published ? "sample standard deviation of " + of + ", each frame scaled to 0 to 1, over the latest " +
+                               frames + " frames, stretched to 0 to 1 (published profile)"
+                         : "population standard deviation of " + of + ", scaled to 0 to 1 over the series, over the " +
+                               "latest " + frames + " frames";
+    case Derivation::Kind::Difference:
+        return of + " less its values in frame " + std::to_string(derivation.reference) + ", in data units";
+    }
+    return {};
 }
 
 std::optional<int> volatilityFrames(const Session& session) {

@@ -39,6 +39,9 @@ void setChannel(Session& session, Channel channel, const std::string& name);
 /// The same with the variable that drives brightness (thesis fig. 6.5); nothing without one.
 void swapOpacityAndBrightness(Session& session);
 
+/// What the values of a derived variable are by the definitions of the session's profile, in words.
+std::string definitionOf(const Session& session, const Derivation& derivation);
+
 /// Latest frames of the volatility that drives a channel; empty where none does.
 std::optional<int> volatilityFrames(const Session& session);
 void setVolatilityFrames(Session& session, int frames);

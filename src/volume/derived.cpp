@@ -132,13 +132,14 @@ std::vector<float> differenceOf(const Volume& from, const Volume& to, const JobC
 /// exact: what was added and taken away again leaves no trace, and every way to a frame gives the same bits.
 class VolatilitySums {
 public:
-    VolatilitySums(std::shared_ptr<TimeSeries> base, int frames)
-        : m_base(std::move(base)), m_frames(frames), m_units(frames <= 128 ? 1 << 24 : 1 << 20) {}
+    VolatilitySums(std::shared_ptr<TimeSeries> base, int frames, VolatilityKind kind)
+        : m_base(std::move(base)), m_frames(frames), m_units(frames <= 128 ? 1 << 24 : 1 << 20), m_kind(kind) {}
 
     /// `present`: the frame itself.
     std::vector<float> at(const Volume& present, int frame, const JobControl& job) {
         const std::lock_guard lock(m_mutex);
-        const ValueRange range = m_base->range(job);
+        // Published, each frame is normalised by itself, and no other has to be read for that.
+        const ValueRange range = isPublished() ? ValueRange{0, 1} : m_base->range(job);
         if (!(range == m_range) || m_sums.size() != present.size()) reset(range, present.size());
         const int first = std::max(0, frame - m_frames + 1);
         int kept = 0;
@@ -154,10 +155,14 @@ public:
             reset(range, present.size()); // half of a frame may be in
             throw;
         }
-        return deviations(present.dims());
+        std::vector<float> values = deviations(present.dims());
+        if (isPublished()) stretch(values);
+        return values;
     }
 
 private:
+    bool isPublished() const { return m_kind == VolatilityKind::Published; }
+
     struct Sums {
         std::int64_t sum = 0, squares = 0;
     };
@@ -176,7 +181,7 @@ private:
         } catch (const Error&) {
             return; // its maker tells; the deviation is that of the others
         }
-        const Normaliser normalised(m_range);
+        const Normaliser normalised(isPublished() ? volume->dataRange() : m_range);
         const bool allValid = volume->invalidCount() == 0;
         if (!allValid && m_invalid.empty()) m_invalid.assign(volume->size(), 0);
         forEachVoxel(*volume, {}, [&](const auto& values, std::size_t i) {
@@ -197,7 +202,8 @@ private:
     std::vector<float> deviations(const Int3& dims) const {
         std::vector<float> out(m_sums.size());
         const auto n = static_cast<std::int64_t>(m_in.size());
-        const double scale = 1.0 / (static_cast<double>(n) * m_units);
+        const double count = static_cast<double>(n);
+        const double scale = 1.0 / ((isPublished() ? std::sqrt(count * std::max(1.0, count - 1)) : count) * m_units);
         forEachPlace(dims, {}, [&](const Int3&, std::size_t i) {
             const Sums& s = m_sums[i];
             // n·Σq² and (Σq)² are below n²·2⁴⁸ (n²·2⁴⁰): they fit.
@@ -207,9 +213,22 @@ private:
         return out;
     }
 
+    /// The least is 0 and the largest 1 then; where all are one, 0.
+    static void stretch(std::vector<float>& values) {
+        float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+        for (const float v : values)
+            if (!std::isnan(v)) {
+                lo = std::min(lo, v);
+                hi = std::max(hi, v);
+            }
+        for (float& v : values)
+            if (!std::isnan(v)) v = hi > lo ? (v - lo) / (hi - lo) : 0.0f;
+    }
+
     const std::shared_ptr<TimeSeries> m_base;
     const int m_frames;
     const int m_units;
+    const VolatilityKind m_kind;
     std::mutex m_mutex;
     ValueRange m_range{0, 0};
     std::set<int> m_in; // frames that the sums are of
@@ -222,7 +241,7 @@ constexpr int kMostFrames = 2048; // so that sums of squares fit
 } // namespace
 
 std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation,
-                                   const JobControl& job) {
+                                   const JobControl& job, VolatilityKind volatility) {
     SeriesListing listing = base->listing();
     const std::string title = derivation.text();
     listing.title = title;
@@ -240,8 +259,9 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
             throw UsageError("volatility of " + std::to_string(derivation.frames) + " frames", "variable " + title,
                              "give 1 to " + std::to_string(kMostFrames) + " frames");
         listing.declaredRange = ValueRange{0, 0.5}; // no values of [0,1] deviate more
-        valuesOf = [sums = std::make_shared<VolatilitySums>(base, derivation.frames)](const Volume& present, int frame,
-                                                                                      const JobControl& loading) {
+        if (volatility == VolatilityKind::Published) listing.declaredRange = ValueRange{0, 1};
+        valuesOf = [sums = std::make_shared<VolatilitySums>(base, derivation.frames, volatility)](
+                       const Volume& present, int frame, const JobControl& loading) {
             return sums->at(present, frame, loading);
         };
         break;

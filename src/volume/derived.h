@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "base/enum_names.h"
 #include "volume/time_series.h"
 
 namespace pellucid {
@@ -28,12 +29,21 @@ struct Derivation {
 /// Empty where `text` is the name of a plain variable. Throws UsageError where it begins like a derivation and is none.
 std::optional<Derivation> parseDerivation(const std::string& text);
 
+/// Which definition of volatility.
+enum class VolatilityKind {
+    Population, ///< of X normalised over the series, as it is (docs/method.md, "Derived variables")
+    Published   ///< sample deviation of X normalised per frame, stretched to [0,1] (docs/method.md, "The published
+                ///< profile")
+};
+template <>
+inline constexpr auto kNamesOf<VolatilityKind> = enumNames("volatility", "population", "published");
+
 /// The derived variable, frame by frame on the grid of `base`, as float. `base` is normalised by its range() over all
 /// frames. A voxel that is invalid in any frame it is made of is invalid. Volatility keeps running sums, so that the
 /// next frame costs one frame, in either direction; a frame that cannot be read is left out of it.
 /// Throws UsageError for a reference frame that is not there.
 std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation,
-                                   const JobControl& job = {});
+                                   const JobControl& job = {}, VolatilityKind volatility = VolatilityKind::Population);
 
 /// Trilinear samples of `volume` at the voxels of `grid`, in the world; invalid beyond its box. Float.
 Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl& job = {});

@@ -350,3 +350,65 @@ TEST_CASE("a film is made where ffmpeg is installed", "[cli][sequence]") {
     CHECK(failed.err.find("no such codec") != std::string::npos);
     CHECK(w.read("film.mp4") == list); // whole or as it was
 }
+
+TEST_CASE("sequence brings out an intensity, a hue or a region in every frame", "[cli][sequence]") {
+    const Series w;
+    const Words refine{"--mode", "refine", "--no-pictures", "--frames", "0:2"};
+    // What refine makes of a frame, from the transfer function of the frame before.
+    const auto alone = [&](int frame, const std::string& tf, const Words& priority) {
+        return w.json(Words{"refine", "f%02d.raw", "--raw", "14,14,14,u8", "--range", "0,255", "--frame",
+                            std::to_string(frame), "--tf", tf} +
+                      priority);
+    };
+    const auto checkFrames = [&](const json& told, const Words& priority) {
+        std::string before = "tents:3:0.2";
+        for (int f = 0; f < 3; ++f) {
+            const json& one = told["frames"][static_cast<std::size_t>(f)];
+            const json expected = alone(f, before, priority);
+            CHECK(one["tf"]["points"] == expected["tf"]["points"]);
+            for (const char* energy :
+                 {"energy_before", "energy_after", "energy_movable_before", "energy_movable_after"})
+                CHECK(one[energy] == expected[energy]);
+            CHECK(one["moves"] == expected["iterations"]);
+            if (f == 0) CHECK(told["priority"] == expected["priority"]);
+            before = "o/frame_000" + std::to_string(f) + ".tf.json";
+        }
+    };
+    const json plain = w.json(kSeries + refine + Words{"--out", "o"});
+    CHECK(plain["priority"] == json({{"kind", "none"}}));
+    const Words steps{"--step-down", "0.01", "--step-up", "auto", "--max-iterations", "7"};
+    const Words intensity = Words{"--intensity", "0.5"} + steps;
+    checkFrames(w.json(kSeries + refine + intensity + Words{"--out", "o"}), intensity);
+    const json byHue = w.json(kSeries + refine + Words{"--hue", "300", "--out", "o"});
+    checkFrames(byHue, {"--hue", "300"});
+    // Tent 3 of 3: hue 360 degrees times its centre 5/6.
+    CHECK(byHue["frames"][2]["priority"]["intensity"].get<double>() == Approx(5.0 / 6));
+    CHECK(byHue["frames"][2]["tf"] != plain["frames"][2]["tf"]);
+    const json byRegion = w.json(kSeries + refine + Words{"--region", "10,8,20,16", "--out", "o"});
+    CHECK(byRegion["priority"]["kind"] == "region");
+    CHECK(byRegion["priority"]["size"] == json({32, 24}));
+    CHECK(byRegion["priority"]["pixels"] == 10 * 8);
+    const json first = alone(0, "tents:3:0.2", {"--region", "10,8,20,16", "--size", "32x24"});
+    CHECK(byRegion["priority"] == first["priority"]);
+    CHECK(byRegion["frames"][0]["tf"]["points"] == first["tf"]["points"]);
+    CHECK(w.read("o/curves.csv").find("seconds,energy,") != std::string::npos);
+    const Outcome text = w.run(kSeries + refine + Words{"--hue", "300", "--out", "o"});
+    CHECK_THAT(text.out, Catch::Contains("energy") && Catch::Contains("priority intensity 0.833333, hue 300"));
+    // Voxels of the data are chosen by three intervals.
+    CHECK(answerOf(w, kSeries + refine + Words{"--region", "2:12,0:14,0:14", "--out", "p"})["volume"]["dims"][0] == 10);
+}
+
+TEST_CASE("sequence refuses priorities that say nothing", "[cli][sequence]") {
+    const Series w;
+    const auto refused = [&](const Words& words, int status, const std::string& message) {
+        const Outcome o = w.run(kSeries + words + Words{"--no-pictures", "--out", "o"});
+        CHECK(o.status == status);
+        CHECK_THAT(o.err, Catch::Contains(message));
+    };
+    refused({"--mode", "refine", "--hue", "3", "--intensity", "0.5"}, 2, "more than one priority");
+    refused({"--mode", "refine", "--region", "0,0,40,8"}, 2, "outside the picture of 32 x 24 pixels");
+    refused({"--mode", "refine", "--region", "4,4,4,8"}, 2, "holds no pixel");
+    refused({"--hue", "3"}, 2, "only in the mode refine");
+    refused({"--mode", "static", "--step-down", "0.1"}, 2, "--step-down");
+    refused({"--mode", "refine", "--region", "0,0,1,1"}, 1, "the region shows nothing");
+}

@@ -19,6 +19,7 @@
 #include "controllers/player_controller.h"
 #include "panels/temporal_panel.h"
 #include "panels/time_strip.h"
+#include "session/refine_priority.h"
 #include "session/session_json.h"
 #include "tf/palette_bar.h"
 #include "widgets/input_habits.h"
@@ -431,6 +432,63 @@ TEST_CASE("a click on the palette refines all frames, one from the other", "[pla
     w.settle();
     CHECK(std::isinf(w.session().adapt->usedCoherence()));
     CHECK(w.document().tf().points[1].opacity == Approx(w.session().variable().track.keys.at(0)->points[1].opacity));
+}
+
+TEST_CASE("a region of the picture is brought out in all frames", "[player]") {
+    SeriesWindow w;
+    w.child<QAction>("adaptRefineAction").trigger();
+    w.settle();
+    const QPoint middle(w.view().width() / 2, w.view().height() / 2);
+    w.child<QAction>("rectangleAction").trigger();
+    drag(w.view(), middle - QPoint(12, 12), middle + QPoint(12, 12));
+    REQUIRE(waitFor([&] { return w.session().refine->region.has_value(); }));
+    w.settle();
+    REQUIRE(w.adapting().progress().done == 6);
+    // What every frame is refined for: the colours that the key's picture shows there.
+    const TfTrack& track = w.session().variable().track;
+    const RefineSettings& favoured = *w.session().refine;
+    CHECK(favoured.regionSize[0] == 320); // the longer side of the view, as the selection was looked at
+    TransferFunction tf = *track.keys.at(0);
+    RefineOptions by = favoured.options();
+    by.priority.region = regionColors(sceneAt(w.services().scene(), 0, tf), *favoured.region, favoured.regionSize);
+    for (int f = 0; f < 6; ++f) {
+        tf = refine(makeHistogram(ball(f).withRange({0, 1})), tf, by).tf;
+        INFO("frame " << f);
+        REQUIRE(track.adapted.at(f).tf->points.size() == tf.points.size());
+        for (std::size_t i = 0; i < tf.points.size(); ++i)
+            CHECK(track.adapted.at(f).tf->points[i].opacity == Approx(tf.points[i].opacity).margin(1e-9));
+    }
+    CHECK(w.child<QLabel>("refinePriority").text() == "Prioritized: a region");
+    w.child<QToolButton>("clearPriorityButton").click();
+    w.settle();
+    CHECK_FALSE(w.session().refine->favoursAny());
+    CHECK(w.adapting().progress().done == 6); // made anew, for nothing
+    RefineOptions evenly = w.session().refine->options();
+    tf = refine(makeHistogram(ball(0).withRange({0, 1})), *w.session().variable().track.keys.at(0), evenly).tf;
+    CHECK(w.session().variable().track.adapted.at(0).tf->points[1].opacity == Approx(tf.points[1].opacity));
+}
+
+TEST_CASE("a hue of a session stands on the palette and is brought out in all frames", "[player]") {
+    SeriesWindow w;
+    w.services().store().edit("Hue", {}, [](Session& session) {
+        session.refine.edit([](RefineSettings& r) { r.hue = 180; });
+        session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Refine; });
+    });
+    w.settle();
+    CHECK(w.child<QLabel>("refinePriority").text() == "Prioritized: hue 180°");
+    REQUIRE(w.adapting().progress().done == 6);
+    const TfTrack& track = w.session().variable().track;
+    RefineOptions by = w.session().refine->options();
+    by.priority.intensity = 0.5; // the middle tent of tents:3
+    TransferFunction tf = *track.keys.at(0);
+    for (int f = 0; f < 6; ++f) {
+        tf = refine(makeHistogram(ball(f).withRange({0, 1})), tf, by).tf;
+        CHECK(track.adapted.at(f).tf->points[4].opacity == Approx(tf.points[4].opacity).margin(1e-9));
+    }
+    auto& palette = w.child<PaletteBar>("paletteBar"); // a click there takes its place
+    QTest::mouseClick(&palette, Qt::LeftButton, {}, palette.positionOf(1.0 / 6).toPoint());
+    CHECK_FALSE(w.session().refine->hue);
+    CHECK(w.session().refine->intensity);
 }
 
 TEST_CASE("with coherence frames are smoothed together, and undo knows nothing of it", "[player]") {

@@ -1,10 +1,13 @@
 // The published definitions in the window: figures of the grid's face, whatever the picture shows.
+#include <QAction>
 #include <QComboBox>
 #include <QDockWidget>
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
 
 #include "gui_support.h"
+#include "optimize/refine/refine.h"
 #include "render/published_engine.h"
 #include "support/temp_folder.h"
 
@@ -80,6 +83,31 @@ TEST_CASE("the window measures by the published definitions", "[window][publishe
     w.settle();
     CHECK(w.services().scene().session.measure->profile == Profile::Default);
     CHECK(profile.currentText() == "Pellucid's");
+}
+
+TEST_CASE("the window refines by the published definitions", "[window][published]") {
+    OpenWindow w;
+    const TransferFunction before = w.document().tf();
+    auto& remark = w.child<QLabel>("refineProfile");
+    auto& step = w.child<QDoubleSpinBox>("refineStepDown");
+    CHECK(remark.isHidden());
+    CHECK_FALSE(step.isHidden());
+    pick(w.child<QComboBox>("profileCombo"), "Published");
+    w.settle();
+    CHECK_FALSE(remark.isHidden());
+    CHECK(step.isHidden()); // the profile has steps of its own
+    w.child<QAction>("refineAction").trigger();
+    w.settle();
+    RefineOptions by;
+    by.profile = Profile::Published;
+    by.stepDown = kPublishedStep;
+    by.stepUp = kPublishedStep;
+    const RefineResult expected = refine(w.document().histogram(), before, by);
+    REQUIRE(expected.iterations > 0);
+    for (std::size_t i = 0; i < before.points.size(); ++i)
+        CHECK(w.document().tf().points[i].opacity == Approx(expected.tf.points[i].opacity));
+    CHECK(w.child<QLabel>("panelMessage").text().contains("By the published definitions."));
+    CHECK_FALSE(refine(w.document().histogram(), before).tf == expected.tf);
 }
 
 TEST_CASE("a transfer function of Voreen opens in the window", "[window][published]") {

@@ -10,6 +10,7 @@
 #include "optimize/time/tracking.h"
 #include "session/frame_adapter.h"
 #include "session/frame_figures.h"
+#include "session/refine_priority.h"
 #include "session/track_keys.h"
 #include "tf/opacity.h"
 
@@ -274,6 +275,71 @@ TEST_CASE("refinement depends on its own settings, not on the view", "[adapt]") 
     CHECK(stale(scene).empty());
     scene.session.camera.reset();
     CHECK(firstStale(scene.session, *scene.series) == 0);
+}
+
+TEST_CASE("a hue is the same colour in every frame, and each frame goes on from the one before", "[adapt]") {
+    Scene scene = sceneOf(Mode::Refine, 0);
+    // Hue 60 is that of the first tent's points (tents(): 360 degrees times the centre, 1/6).
+    scene.session.refine.edit([](RefineSettings& r) { r.hue = 60; });
+    const TransferFunction key = scene.tf;
+    RefineOptions by = scene.session.refine->options();
+    by.priority.intensity = intensityOfHue(key, 60);
+    CHECK(*by.priority.intensity == Approx(1.0 / 6));
+    const auto made = adaptAll(scene);
+    REQUIRE(made.size() == kFrames);
+    TransferFunction before = key;
+    for (const AdaptedFrame& f : made) {
+        const Scene at = sceneAt(scene, f.frame, before);
+        const RefineResult alone = refine(*at.histogram, at.tf, by);
+        CHECK(f.tf == alone.tf);
+        CHECK(f.priority == by.priority);
+        REQUIRE(f.energy);
+        CHECK(f.energy->before == alone.energyBefore);
+        CHECK(f.energy->after == alone.energyAfter);
+        CHECK(f.energy->movableBefore == alone.energyMovableBefore);
+        CHECK(f.energy->movableAfter == alone.energyMovableAfter);
+        before = f.tf;
+    }
+    CHECK(stale(scene).empty());
+    // The key's colours are what the hue is looked for in.
+    scene.session.refine.edit([](RefineSettings& r) { r.hue = 300; });
+    CHECK(firstStale(scene.session, *scene.series) == 0);
+}
+
+TEST_CASE("of two places of one hue the key's more opaque one stays meant", "[adapt]") {
+    Scene scene = sceneOf(Mode::Refine, 0);
+    Session session = scene.session;
+    TransferFunction tf = tents(3, 0.2); // points 0..8, the peaks are 1, 4 and 7
+    for (const std::size_t i : {6, 7, 8}) tf.points[i].color = tf.points[0].color;
+    tf.points[7].opacity = 0.21;
+    session.variables.edit([](std::vector<Variable>& all) { all.front().track = {}; });
+    session.setTf(tf);
+    session.refine.edit([](RefineSettings& r) { r.hue = 60; });
+    scene = resolve(session, scene);
+    for (const AdaptedFrame& f : adaptAll(scene)) CHECK(f.priority.intensity == Approx(5.0 / 6)); // that of peak 7
+}
+
+TEST_CASE("a region's colours are those of the key's picture in all frames", "[adapt]") {
+    Scene scene = sceneOf(Mode::Refine, 0);
+    const ImageRegion region{{{0.3, 0.3}, {0.7, 0.3}, {0.7, 0.7}, {0.3, 0.7}}};
+    scene.session.refine.edit([&](RefineSettings& r) {
+        r.region = region;
+        r.regionSize = {48, 32};
+    });
+    const std::vector<RegionColor> colors = regionColors(scene, region, {48, 32});
+    double pixels = 0;
+    for (const RegionColor& c : colors) pixels += c.count;
+    // Pixel centres within [0.3, 0.7): 14.4 ≤ i + ½ < 33.6 are 20 of 48, 9.6 ≤ j + ½ < 22.4 are 12 of 32.
+    CHECK(pixels == 20 * 12);
+    TransferFunction before = scene.tf;
+    for (const AdaptedFrame& f : adaptAll(scene)) {
+        CHECK(f.priority.region == colors);
+        const Scene at = sceneAt(scene, f.frame, before);
+        RefineOptions by = scene.session.refine->options();
+        by.priority.region = colors;
+        CHECK(f.tf == refine(*at.histogram, at.tf, by).tf);
+        before = f.tf;
+    }
 }
 
 TEST_CASE("infinite coherence is a static transfer function", "[adapt]") {

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "optimize/objective.h"
 #include "render/published_engine.h"
+#include "session/refine_priority.h"
 #include "session/workspace.h"
 #include "support/volumes.h"
 
@@ -82,6 +83,32 @@ TEST_CASE("the published profile takes the steps of table 5.1", "[session][publi
     }
     CHECK(search("nucleon", SearchMethod::Parallel).history.back().objective ==
           Approx(0.015434).epsilon(0).margin(1e-5));
+}
+
+TEST_CASE("published refinement of the thesis's own transfer functions", "[session][published][real]") {
+    if (!haveThesisData()) return;
+    // Peaks in 255ths, iterations and movable energies of a script that reads the raw files and adds up
+    // −α p ln p over whole values by itself.
+    struct Expected {
+        const char *volume, *tf;
+        std::vector<int> peaks;
+        int iterations;
+        double before, after;
+    };
+    const Expected all[] = {{"nucleon", "_naive", {60, 58, 137}, 72, 6.495459526e-05, 3.4233941465e-09},
+                            {"nucleon", "_naive_proportional", {60, 58, 138}, 54, 6.206338575e-05, 4.5602492e-10},
+                            {"tooth", "_naive", {159, 64, 77}, 77, 5.664709735e-04, 6.750454234e-08},
+                            {"tooth", "_naive_proportional", {136, 54, 66}, 128, 1.999026911e-03, 1.85966702e-08}};
+    for (const Expected& e : all) {
+        const Scene scene = thesisScene(e.volume, std::string(e.volume) + e.tf);
+        const RefineResult r = refine(*scene.histogram, scene.tf, refineOptions(scene.session));
+        const std::vector<double> peaks = featureOpacities(r.tf);
+        REQUIRE(peaks.size() == e.peaks.size());
+        for (std::size_t f = 0; f < peaks.size(); ++f) CHECK(255 * peaks[f] == Approx(e.peaks[f]));
+        CHECK(r.iterations == e.iterations);
+        CHECK(r.energyMovableBefore == Approx(e.before).epsilon(1e-6));
+        CHECK(r.energyMovableAfter == Approx(e.after).epsilon(1e-4));
+    }
 }
 
 TEST_CASE("intensities of 8-bit data are value/255 in the published profile", "[session][published]") {

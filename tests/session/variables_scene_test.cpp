@@ -165,6 +165,74 @@ TEST_CASE("figures, coarser copies and views are of the colours that are drawn",
     CHECK(mapOf(drawn) == ofDrawn);
 }
 
+TEST_CASE("published volatility is stretched and each frame is normalised by itself", "[variables][published]") {
+    SceneInputs inputs = hurricane(6, 3);
+    const Scene before = openScene(inputs);
+    inputs.session.measure.edit([](MeasureSettings& m) { m.profile = Profile::Published; });
+    const Scene scene = openScene(inputs);
+    // Of frames 4 to 6, each over its own largest and least value: the sample deviation (n − 1 = 2), then stretched.
+    const std::size_t size = scene.volume->size();
+    std::vector<double> deviation(size, 0);
+    std::vector<std::vector<double>> frames;
+    for (int f = 4; f <= 6; ++f) {
+        const auto volume = scene.series->load(f);
+        const ValueRange range = volume->dataRange();
+        std::vector<double>& scaled = frames.emplace_back();
+        for (std::size_t i = 0; i < size; ++i) scaled.push_back((volume->value(i) - range.lo) / (range.hi - range.lo));
+    }
+    double least = 1e9, most = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        const double mean = (frames[0][i] + frames[1][i] + frames[2][i]) / 3;
+        double sum = 0;
+        for (const auto& f : frames) sum += (f[i] - mean) * (f[i] - mean);
+        deviation[i] = std::sqrt(sum / 2);
+        if (!scene.volume->isValid(i)) continue;
+        least = std::min(least, deviation[i]);
+        most = std::max(most, deviation[i]);
+    }
+    const auto rain = scene.others.at("y")->load(6);
+    const ValueRange y = rain->dataRange();
+    for (std::size_t i = 0; i < size; i += 7) {
+        if (!scene.volume->isValid(i) || !rain->isValid(i)) continue;
+        const double s = std::min(1.0, 7 * (deviation[i] - least) / (most - least));
+        const double b = 1 - std::min(1.0, 3 * (rain->value(i) - y.lo) / (y.hi - y.lo));
+        REQUIRE((scene.colors->rgba[i] & 255u) == Approx(255 * b).margin(1));
+        REQUIRE((scene.colors->rgba[i] >> 8 & 255u) == Approx(255 * b * (1 - s)).margin(1));
+    }
+    CHECK_FALSE(scene.colors->rgba == before.colors->rgba);
+
+    // The definitions changed in a scene that is open, and changed back; a scale found by the one is not the other's.
+    Session session = before.session;
+    session.measure = scene.session.measure;
+    CHECK_FALSE(needsData(session, before));
+    const Scene changed = resolve(session, before);
+    CHECK(changed.colors->rgba == scene.colors->rgba);
+    CHECK(resolve(before.session, changed).colors->rgba == before.colors->rgba);
+    inputs.session.hsb.edit([](HsbMapping& h) { h.a.reset(); });
+    const Scene automatic = openScene(inputs);
+    session = automatic.session;
+    session.measure = before.session.measure;
+    CHECK(automatic.hsbA < 0.5 * resolve(session, automatic).hsbA);
+    CHECK(resolve(session, automatic).hsbA == openScene([&] {
+                                                  SceneInputs plain = inputs;
+                                                  plain.session.measure = before.session.measure;
+                                                  return plain;
+                                              }())
+                                                  .hsbA);
+    CHECK(definitionOf(scene.session, {Derivation::Kind::Volatility, "x", 3, 0}).find("sample") == 0);
+    CHECK(definitionOf(before.session, {Derivation::Kind::Volatility, "x", 3, 0}).find("population") == 0);
+
+    // A volatility in the first place is other data then.
+    setChannel(session, Channel::Opacity, "volatility:x:3");
+    const Scene first = resolve(session, automatic);
+    Session published = first.session;
+    published.measure = scene.session.measure;
+    CHECK(needsData(published, first));
+    const Scene other = resolve(published, first);
+    CHECK(other.data->dataRange() == ValueRange{0, 1});
+    CHECK(first.data->dataRange().hi < 0.6);
+}
+
 TEST_CASE("the published profile has no colours by variable", "[variables]") {
     SceneInputs inputs = hurricane(12, 5);
     inputs.session.measure.edit([](MeasureSettings& m) { m.profile = Profile::Published; });

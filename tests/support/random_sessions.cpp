@@ -240,11 +240,14 @@ RefineSettings randomRefine(Random& random) {
     r.live = random.chance(0.5);
     if (random.chance(0.3)) {
         r.intensity = oddNumber(random, 0, 1);
+    } else if (random.chance(0.3)) {
+        r.hue = oddNumber(random, -360, 720);
     } else if (random.chance(0.4)) {
         ImageRegion region;
         for (int i = 3 + random.below(5); i > 0; --i)
             region.outline.emplace_back(oddNumber(random, 0, 1), oddNumber(random, 0, 1));
         r.region = std::move(region);
+        if (random.chance(0.5)) r.regionSize = {1 + random.below(2000), 1 + random.below(2000)};
     }
     return r;
 }

@@ -1,5 +1,6 @@
 #include "volume/derived.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -95,6 +96,80 @@ TEST_CASE("a frame that cannot be read is left out of volatility, an invalid vox
         CHECK(v->isValid(11) == (frame < 3 || frame > 5)); // while frame 3 is among the latest three
         CHECK(v->isValid(12));
     }
+}
+
+namespace {
+
+/// By the published definition: each frame scaled to [0,1] by its own values, the sample deviation of the frames, two
+/// passes in double, then all voxels scaled to [0,1].
+std::vector<double> publishedVolatility(TimeSeries& base, int frame, int n, int missing = -1) {
+    std::vector<std::vector<double>> frames;
+    for (int f = std::max(0, frame - n + 1); f <= frame; ++f) {
+        if (f == missing) continue;
+        const auto volume = base.load(f);
+        const ValueRange range = volume->dataRange();
+        std::vector<double>& scaled = frames.emplace_back();
+        for (std::size_t i = 0; i < volume->size(); ++i)
+            scaled.push_back((volume->value(i) - range.lo) / (range.hi - range.lo));
+    }
+    std::vector<double> deviations;
+    for (std::size_t i = 0; i < frames.front().size(); ++i) {
+        double mean = 0, sum = 0;
+        for (const auto& f : frames) mean += f[i] / static_cast<double>(frames.size());
+        for (const auto& f : frames) sum += (f[i] - mean) * (f[i] - mean);
+        deviations.push_back(std::sqrt(sum / static_cast<double>(frames.size() - 1)));
+    }
+    const auto [lo, hi] = std::minmax_element(deviations.begin(), deviations.end());
+    const double from = *lo, width = *hi - *lo;
+    for (double& d : deviations) d = (d - from) / width;
+    return deviations;
+}
+
+} // namespace
+
+TEST_CASE("published volatility is the sample deviation of frames scaled each, stretched", "[derived][published]") {
+    for (const int missing : {-1, 3}) {
+        const auto base = noise(12, missing);
+        for (const int n : {2, 5, 10, 40}) {
+            const auto series = derive(base, volatility(n), {}, VolatilityKind::Published);
+            CHECK(series->range() == ValueRange{0, 1});
+            for (const int frame : {1, 4, 11}) {
+                const auto volume = series->load(frame);
+                const auto expected = publishedVolatility(*base, frame, n, missing);
+                if (frame == 4 && n == 2 && missing == 3) continue; // one frame alone, below
+                for (std::size_t i = 0; i < volume->size(); ++i)
+                    CHECK(volume->value(i) == Approx(expected[i]).margin(1e-5));
+                CHECK(volume->dataRange() == ValueRange{0, 1});
+            }
+        }
+    }
+    // A single frame does not deviate.
+    CHECK(derive(noise(5), volatility(4), {}, VolatilityKind::Published)->load(0)->dataRange() == ValueRange{0, 0});
+    CHECK(derive(noise(5, 3), volatility(2), {}, VolatilityKind::Published)->load(4)->dataRange() == ValueRange{0, 0});
+}
+
+TEST_CASE("published volatility of three voxels by hand", "[derived][published]") {
+    // Frames (0, 1, 4) and (10, 14, 14), each scaled by itself: (0, 1/4, 1) and (0, 1, 1). Two values a and b have the
+    // sample deviation |a - b|/√2: (0, 3/4, 0)/√2, stretched (0, 1, 0). The third frame (2, 0, 1) is (1, 0, 1/2): of
+    // the latest three the voxels have (0, 0, 1), (1/4, 1, 0), (1, 1, 1/2). Their means are 1/3, 5/12 and 5/6, the
+    // sums of squares 2/3, (1/36 + 49/144 + 25/144) = 13/24 and 1/6, the variances over n - 1 = 2: 1/3, 13/48, 1/12.
+    const std::vector<std::vector<float>> frames{{0, 1, 4}, {10, 14, 14}, {2, 0, 1}};
+    SeriesListing listing;
+    listing.title = "three voxels";
+    for (int f = 0; f < 3; ++f) listing.frames.push_back({{}, static_cast<double>(f), "step"});
+    const auto base = std::make_shared<TimeSeries>(std::move(listing), [frames](int f, const JobControl&) {
+        Geometry g;
+        g.dims = {3, 1, 1};
+        return Volume(g, SampleArray<float>(std::vector<float>(frames[static_cast<std::size_t>(f)])));
+    });
+    const auto series = derive(base, volatility(3), {}, VolatilityKind::Published);
+    const auto second = series->load(1), third = series->load(2);
+    for (const std::size_t i : {0u, 2u}) CHECK(second->value(i) == Approx(0).margin(1e-6));
+    CHECK(second->value(1) == Approx(1));
+    const double a = std::sqrt(1.0 / 3), b = std::sqrt(13.0 / 48), c = std::sqrt(1.0 / 12);
+    CHECK(third->value(0) == Approx(1));
+    CHECK(third->value(1) == Approx((b - c) / (a - c)).margin(1e-6));
+    CHECK(third->value(2) == Approx(0).margin(1e-6));
 }
 
 TEST_CASE("the gradient's magnitude of a ramp is its slope, of normalised values per d0", "[derived]") {

@@ -17,6 +17,8 @@ void EngineOptions::add(CLI::App& app) { given.add(app, kGroup, {"engine", "qual
 
 void EngineOptions::addProfile(CLI::App& app) { given.add(app, kGroup, {"profile", "along"}); }
 
+void EngineOptions::addDefinitions(CLI::App& app) { given.add(app, kGroup, {"profile"}); }
+
 void EngineOptions::applyTo(SceneInputs& inputs) const {
     inputs.session.measure.edit([this](MeasureSettings& m) { given.applyTo(m); });
     if (given.has("along") && !isPublished(*inputs.session.measure))
@@ -35,6 +37,15 @@ void EngineOptions::requireProfile(const SceneInputs& inputs, const SaliencyInpu
     if (!settings.empty())
         throw UsageError("the published profile has its own definition of this", settings.front()->optionName(),
                          "leave it out, or give --profile default");
+}
+
+void requireOwnSteps(Profile profile, const SettingOptions<RefineSteps>& steps) {
+    if (profile != Profile::Published) return;
+    for (const Setting* step : steps.given())
+        for (const char* own : {"step_down", "step_up"})
+            if (std::string_view(step->key) == own)
+                throw UsageError("the published profile has its own definition of this", step->optionName(),
+                                 "leave it out, or give --profile default");
 }
 
 std::optional<std::string> profileNotice(const MeasureSettings& settings, const CameraOptions& camera) {

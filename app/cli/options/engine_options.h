@@ -16,6 +16,8 @@ struct EngineOptions {
     void add(CLI::App& app);
     /// Beside the above; for commands that measure.
     void addProfile(CLI::App& app);
+    /// --profile alone; for commands that look from nowhere.
+    void addDefinitions(CLI::App& app);
     /// Throws UsageError for --along without the published profile.
     void applyTo(SceneInputs& inputs) const;
     /// The published profile has its own definition of engine, quality and saliency: throws UsageError naming the
@@ -23,6 +25,8 @@ struct EngineOptions {
     void requireProfile(const SceneInputs& inputs, const SaliencyInput& saliency) const;
 };
 
+/// The published profile refines by steps of its own: throws UsageError naming the option that was given with it.
+void requireOwnSteps(Profile profile, const SettingOptions<RefineSteps>& steps);
 /// What one should know of figures that are not of the camera: empty, or that they are of the profile's own view.
 std::optional<std::string> profileNotice(const MeasureSettings& settings, const CameraOptions& camera);
 /// "profile" and "along", where figures are of the published profile.

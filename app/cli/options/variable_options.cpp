@@ -166,6 +166,20 @@ void addMapping(Json& result, const Scene& scene) {
         json["hue_from"] = hsb.hueFrom;
         json["hue_to"] = hsb.hueTo;
     }
+    if (Json definitions = definitionsOf(scene.session); !definitions.empty())
+        json["definitions"] = std::move(definitions);
+}
+
+Json definitionsOf(const Session& session) {
+    Json definitions = Json::object();
+    for (const Variable& v : *session.variables)
+        if (v.derivation) definitions[v.name] = definitionOf(session, *v.derivation);
+    if (!session.hsb->on) return definitions;
+    for (const std::string& driver : {session.hsb->saturation, session.hsb->brightness, session.hsb->hue})
+        if (session.variableNamed(driver) == nullptr)
+            if (const auto derivation = parseDerivation(driver))
+                definitions[driver] = definitionOf(session, *derivation);
+    return definitions;
 }
 
 } // namespace pellucid::cli

@@ -27,7 +27,10 @@ struct VariableOptions {
 };
 
 /// Adds "hsb": {"alpha":"x","saturation":"volatility:x:10","a":12.5,…}, with the scales that were used, to the result
-/// of a command; nothing where colours are those of the transfer function.
+/// of a command, and what derived variables are by definition ("definitions"); nothing where colours are those of the
+/// transfer function.
 void addMapping(Json& result, const Scene& scene);
+/// How a derived variable is named and what its values are: {"volatility:x:10":"population standard deviation of …"}.
+Json definitionsOf(const Session& session);
 
 } // namespace pellucid::cli

@@ -83,7 +83,7 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
              "seed of a sample's noise (default 1)", kGroup);
     addValue(app, "--downsample", "N", downsample, wholeFrom(1, 65536),
              "each voxel is the mean of N along each axis (default: 1, or the least that memory has room for)", kGroup);
-    if (size != SizeIs::Both)
+    if (size != SizeIs::Both && size != SizeIs::ImageWithRegion)
         addValue(app, "--region", "X0:X1,Y0:Y1,Z0:Z1", region, parseVoxelRegion,
                  "only these voxels of the data, from the first to the one before the second", kGroup);
 }
@@ -97,6 +97,16 @@ void VolumeOptions::addSizeOfBoth(CLI::App& app, std::function<void(const ImageS
                 setImage(parseImageSize(text, option));
             else
                 sampleSize = parseSampleSize(text, option);
+        },
+        help);
+}
+
+void VolumeOptions::addRegionOfBoth(CLI::App& app, Take takeImage, const std::string& form, const std::string& help) {
+    addValue(
+        app, "--region", form + "|X0:X1,Y0:Y1,Z0:Z1",
+        [this, takeImage = std::move(takeImage)](const std::string& text, const std::string& option) {
+            if (text.find(':') == std::string::npos) return takeImage(text, option);
+            region = parseVoxelRegion(text, option);
         },
         help);
 }

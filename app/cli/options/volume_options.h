@@ -36,10 +36,13 @@ struct VolumeOptions {
     std::optional<std::uint32_t> seed;
 
     /// --size is a second name of --sample-size, except in commands whose --size is an image's. A command that looks at
-    /// an image only sometimes has both: it takes --size and --region itself, and sets here what is meant for a volume.
-    enum class SizeIs { Sample, Image, Both };
+    /// an image only sometimes has both. ImageWithRegion, Both: --region may be one of an image, too. Such commands add
+    /// what is of both by the two functions below.
+    enum class SizeIs { Sample, Image, ImageWithRegion, Both };
     /// Adds a --size of a command whose --size is a sample's, and of an image that it looks at besides.
     void addSizeOfBoth(CLI::App& app, std::function<void(const ImageSize&)> setImage, const std::string& help);
+    /// Adds a --region that is of the data where it is three intervals, else what `takeImage` takes, of this form.
+    void addRegionOfBoth(CLI::App& app, Take takeImage, const std::string& form, const std::string& help);
     void add(CLI::App& app, SizeIs size = SizeIs::Sample);
     /// Whether any of them but VOLUME is given.
     bool anyDetail() const;

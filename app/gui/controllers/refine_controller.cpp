@@ -14,6 +14,7 @@
 #include "optimize/refine/refine_words.h"
 #include "optimize/refine/region_colors.h"
 #include "services/services.h"
+#include "session/refine_priority.h"
 #include "store/edits.h"
 
 namespace pellucid::gui {
@@ -141,11 +142,11 @@ void RefineController::addActions() {
         select("lassoAction", tr("Select with la&sso"), "Shift+L",
                tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
                Selecting::Lasso);
-    m_actions.nothing = menu.add("prioritizeNothingAction", tr("Prioritize &nothing"), {},
-                                 tr("Forget the intensity or region that refinement brings out; opacities stay"),
-                                 [this] { prioritizeNothing(); }, {.enabled = [this, settings] {
-                                     return m_services.isEditable() && (settings().intensity || settings().region);
-                                 }});
+    m_actions.nothing =
+        menu.add("prioritizeNothingAction", tr("Prioritize &nothing"), {},
+                 tr("Forget the intensity or region that refinement brings out; opacities stay"),
+                 [this] { prioritizeNothing(); },
+                 {.enabled = [this, settings] { return m_services.isEditable() && settings().favoursAny(); }});
     m_actions.ghost = actions.add(tr("&Transfer function"), "ghostAction", tr("Show the &curve before the refinement"),
                                   {}, tr("Behind the curve: what it was before the latest refinement"),
                                   [this] { setGhostShown(!m_ghost); }, {}, {.checked = [this] { return m_ghost; }});
@@ -169,6 +170,7 @@ const std::vector<RegionColor>* RefineController::colorsOf(const ImageRegion& re
 std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings& settings) const {
     RefinePriority priority;
     priority.intensity = settings.intensity;
+    if (settings.hue) return huePriority(m_services.scene(), m_services.scene().tf, *settings.hue);
     if (settings.region) {
         const auto* colors = colorsOf(*settings.region);
         if (colors == nullptr) return {};
@@ -178,9 +180,12 @@ std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings&
 }
 
 RefineOptions RefineController::options() const {
-    const RefineSettings& settings = *m_services.store().session().refine;
-    RefineOptions options = settings.options();
-    options.priority = priorityOf(settings).value_or(RefinePriority());
+    const Session& session = m_services.store().session();
+    RefineOptions options = refineOptions(session);
+    try {
+        options.priority = priorityOf(*session.refine).value_or(RefinePriority());
+    } catch (const Error&) { // no colour has a hue: who refines is told
+    }
     return options;
 }
 
@@ -237,6 +242,7 @@ void RefineController::sayRefined(const Refinement& refinement) {
         text = tr("Refined: %1; %2.")
                    .arg(refinement.words,
                         evennessText(refinement.result.energyMovableBefore, refinement.result.energyMovableAfter));
+    if (refinement.options.profile == Profile::Published) text += ' ' + tr("By the published definitions.");
     if (!refinement.shortfall.isEmpty()) text += ' ' + refinement.shortfall;
     say(text);
 }
@@ -271,9 +277,12 @@ void RefineController::refine() {
     if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
     const RefineSettings& settings = *store.session().refine;
-    if (!priorityOf(settings)) return look(*settings.region, tr("Refine"));
     m_services.attempt(tr("Refinement failed"), [&] {
-        const Refinement r = refineFrom(store.scene().tf, store.scene().tf, store.scene(), options());
+        const std::optional<RefinePriority> priority = priorityOf(settings);
+        if (!priority) return look(*settings.region, tr("Refine"));
+        RefineOptions by = options();
+        by.priority = *priority;
+        const Refinement r = refineFrom(store.scene().tf, store.scene().tf, store.scene(), by);
         r.after == r.before ? sayRefined(r) : apply(r, tr("Refine"), {});
     });
 }
@@ -313,8 +322,8 @@ void RefineController::dragPriority(double x) {
         by.priority.intensity = std::clamp(x, 0.0, 1.0);
         const Refinement r = refineFrom(*m_dragStart, *m_dragStart, store.scene(), by);
         const auto change = [&](RefineSettings& s) {
+            s.favourNothing();
             s.intensity = by.priority.intensity;
-            s.region.reset();
         };
         const QScopedValueRollback quiet(m_quiet, true);
         store.preview(tr("Refine for an intensity"), [&](Session& session) { put(r, change, session); });
@@ -353,8 +362,10 @@ void RefineController::look(const ImageRegion& region, const QString& text) {
     m_pending = region;
     const double longer = std::max({m_viewSize.width(), m_viewSize.height(), 1});
     const auto pixels = [&](int side) { return std::max(1, static_cast<int>(side * kLookSize / longer + 0.5)); };
-    PictureInput picture =
-        plainPictureInput(m_services.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()));
+    std::array<int, 2> size{pixels(m_viewSize.width()), pixels(m_viewSize.height())};
+    const RefineSettings& known = *m_services.store().session().refine;
+    if (known.region == region && known.regionSize[0] > 0) size = known.regionSize; // drawn in that picture
+    PictureInput picture = plainPictureInput(m_services.scene(), size[0], size[1]);
     m_look.start({std::move(picture), region, text}, tr("the region"));
     Q_EMIT busyChanged();
 }
@@ -369,8 +380,9 @@ void RefineController::refineForRegion(const Look& look) {
         by.priority.region = *colorsOf(look.region);
         const TransferFunction start = startOfPriority();
         apply(refineFrom(start, start, store.scene(), by), look.text, [&](RefineSettings& s) {
+            s.favourNothing();
             s.region = look.region;
-            s.intensity.reset();
+            s.regionSize = {look.picture.settings.width, look.picture.settings.height};
         });
         Q_EMIT refined();
     });
@@ -379,10 +391,8 @@ void RefineController::refineForRegion(const Look& look) {
 void RefineController::prioritizeNothing() {
     if (!m_services.isEditable()) return;
     m_look.cancel();
-    editPart(m_services.store(), &Session::refine, tr("Clear the priority"), {}, [](RefineSettings& r) {
-        r.intensity.reset();
-        r.region.reset();
-    });
+    editPart(m_services.store(), &Session::refine, tr("Clear the priority"), {},
+             [](RefineSettings& r) { r.favourNothing(); });
     Q_EMIT refined();
 }
 
@@ -411,18 +421,20 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
     if (m_optimizing.isAnswering() || before.session.frame != after.session.frame) return {};
     const auto was = before.session.tf(), is = after.session.tf();
     if (was == nullptr || is == nullptr) return {};
-    const bool edited = refinesOtherwise(*was, *is, settings.region.has_value());
-    if (!edited && before.session.refine == after.session.refine) return {};
-    const auto priority = priorityOf(settings);
-    if (!priority) {
-        later(this, [this] { refine(); });
+    const bool edited = refinesOtherwise(*was, *is, settings.region || settings.hue);
+    if (!edited && before.session.refine == after.session.refine &&
+        before.session.measure->profile == after.session.measure->profile)
         return {};
-    }
     try {
-        RefineOptions by = settings.options();
+        const auto priority = priorityOf(settings);
+        if (!priority) {
+            later(this, [this] { refine(); });
+            return {};
+        }
+        RefineOptions by = refineOptions(after.session);
         by.priority = *priority;
         const auto held = edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>();
-        Refinement r = refineFrom(after.tf, liveStart(*after.histogram, before.tf, after.tf, held), after, by);
+        Refinement r = refineFrom(after.tf, liveStart(*after.histogram, before.tf, after.tf, held, by), after, by);
         if (r.after == r.before) return {};
         session.setTf(r.after);
         keep(std::move(r));

@@ -141,23 +141,28 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
     makeBold(*m_words);
     makeFaint(*m_comparison);
     const RefineActions& does = refining.actions();
-    auto* form = new QFormLayout;
+    makeFaint(*m_profile);
+    m_profile->setText(tr("Published definitions (Settings): edges weigh by whole bins, in steps of 1/255."));
+    auto* form = m_form = new QFormLayout;
     form->setVerticalSpacing(5);
     QLayout* const selecting = rowOf({{regionButton(*does.rectangle, tr("Select rectangle")), 1},
                                       {regionButton(*does.lasso, tr("Select with lasso")), 1}});
-    fillScrolled(this, columnOf({rowOf({{m_refine, 1}, m_live}), rowOf({{m_priority, 1}, m_nothing}), selecting,
-                                 m_words, m_note, m_help, m_figures, m_edges, m_plot, m_comparison,
-                                 rowOf({{m_ghost, 1}, m_pair}), form, // what came of it is looked at more often
-                                 Cell::rest()},
-                                7));
+    fillScrolled(this,
+                 columnOf({rowOf({{m_refine, 1}, m_live}), rowOf({{m_priority, 1}, m_nothing}), selecting, m_words,
+                           m_note, m_help, m_figures, m_edges, m_plot, m_comparison, rowOf({{m_ghost, 1}, m_pair}),
+                           m_profile, form, // what came of it is looked at more often
+                           Cell::rest()},
+                          7));
     auto* rows = new SettingRows(services, *form, settingPart<RefineSteps>(&Session::refine),
                                  {tr("Refinement settings"), "refine-settings"});
     rows->add("method", {.id = "refineMethodCombo"});
     RowLook step{.id = "refineStepDown", .decimals = 3, .step = 0.25, .factor = 256, .suffix = tr(" / 256")};
     rows->add("step_down", step);
+    m_steps.push_back(form->rowCount() - 1);
     step.id = "refineStepUp";
     step.automatic = [&services] { return services.store().session().refine->stepDown; };
     rows->add("step_up", step);
+    m_steps.push_back(form->rowCount() - 1);
     rows->add("max_iterations", {.id = "refineLimit"});
     rows->follow();
 
@@ -172,7 +177,7 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
     connect(&refining, &RefineController::busyChanged, this, &RefinePanel::showPriority);
     connect(&refining, &RefineController::ghostChanged, this, &RefinePanel::follow);
     followParts(
-        m_services, this, [this] { follow(); }, &Session::refine);
+        m_services, this, [this] { follow(); }, &Session::refine, &Session::measure);
 }
 
 QToolButton* RefinePanel::regionButton(QAction& action, const QString& text) {
@@ -201,6 +206,9 @@ void RefinePanel::follow() {
 
 void RefinePanel::showSettings() {
     const RefineSettings& r = *m_services.store().session().refine;
+    const bool published = m_services.store().session().measure->profile == Profile::Published;
+    m_profile->setVisible(published);
+    for (const int step : m_steps) m_form->setRowVisible(step, !published);
     m_live->setChecked(r.live);
     m_ghost->setChecked(m_refining.isGhostShown());
     for (QWidget* widget : std::initializer_list<QWidget*>{m_refine, m_live})
@@ -217,21 +225,26 @@ void RefinePanel::showPriority() {
         const Volume& volume = *m_services.scene().volume;
         text = tr("Prioritized: value %1")
                    .arg(numberText(volume.valueOfIntensity(*r.intensity), volume.range().hi - volume.range().lo));
+    } else if (r.hue) {
+        text = tr("Prioritized: hue %1°").arg(QString::number(*r.hue, 'g', 4));
     } else if (r.region) {
         text = tr("Prioritized: a region");
     }
     m_priority->setText(text);
-    m_nothing->setEnabled((r.intensity || r.region) && !m_services.isReadOnly());
+    m_nothing->setEnabled(r.favoursAny() && !m_services.isReadOnly());
 }
 
 std::vector<EdgeBars::Bar> RefinePanel::bars() const {
     const Scene& scene = m_services.scene();
     const Refinement* now = m_refining.current();
-    const std::vector<double> weights = now != nullptr
-                                            ? now->result.edgesAfter
-                                            : edgeWeights(*scene.histogram, scene.tf, m_refining.options().priority);
+    const RefineOptions present = m_refining.options();
+    const std::vector<double> weights =
+        now != nullptr ? now->result.edgesAfter
+                       : edgeWeights(*scene.histogram, scene.tf, present.priority, present.profile);
+    RefineOptions bare; // as edgeWeights() has them
+    bare.profile = present.profile;
     const std::vector<RefineEdge> edges =
-        now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
+        now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf, bare);
     const TfSampler sampler(scene.tf);
     const double span = scene.volume->range().hi - scene.volume->range().lo;
     const auto value = [&](double x) { return numberText(scene.volume->valueOfIntensity(x), span); };
@@ -281,7 +294,8 @@ void RefinePanel::showOutcome() {
         tr("%1: energy %2, from %3, in %L4 iterations%5")
             .arg(evenness, shortNumber(result.energyMovableAfter), shortNumber(result.energyMovableBefore))
             .arg(result.iterations)
-            .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")));
+            .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")) +
+        (any->options.profile == Profile::Published ? tr(" By the published definitions.") : QString()));
     m_plot->setPlot(energyPlot(result, now != nullptr));
     m_plot->setVisible(!m_plot->plot().series.empty());
     if (now != nullptr) m_wait.start();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <QCheckBox>
+#include <QFormLayout>
 #include <QPushButton>
 
 #include "controllers/refine_controller.h"
@@ -84,6 +85,9 @@ private:
                               "curve for a value, or select a part of the picture")));
     QToolButton* m_nothing = named(toolButton(tr("Clear"), this), "clearPriorityButton",
                                    tr("Give no value or region priority; the opacities stay as they are"));
+    QLabel* m_profile = withAnyWidth(wrappedLabel("refineProfile", this)); ///< which definitions, where not Pellucid's
+    QFormLayout* m_form = nullptr;
+    std::vector<int> m_steps; ///< rows of the form: the published profile has steps of its own
     QLabel* m_words = withAnyWidth(wrappedLabel("refineWords", this));
     QLabel* m_note = withAnyWidth(wrappedLabel("refineNote", this));
     QLabel* m_figures = withAnyWidth(wrappedLabel("refineFigures", this));

@@ -2,6 +2,7 @@
 #include <QComboBox>
 #include <QPushButton>
 
+#include "controllers/controllers.h"
 #include "panels/panel.h"
 #include "panels/setting_rows.h"
 #include "render/published_engine.h"
@@ -50,9 +51,16 @@ bool looksAlong(const Camera& camera, const Geometry& geometry, Along along) {
 
 /// Pellucid's own definitions or the published ones, and for those the face of the grid that they look at; a remark
 /// where the picture does not show that face, and a button to go there.
-void addDefinitions(Services& services, QFormLayout& form) {
+void addDefinitions(Services& services, OpenController& opening, QFormLayout& form) {
     auto* rows = new SettingRows(services, form, settingPart<MeasureSettings>(&Session::measure),
                                  {QObject::tr("Definitions of figures"), "profile"});
+    // Volatility has another definition then: its frames are gone through off this thread.
+    rows->setCommit([&](const QString& text, const QString& mergeKey, const SessionStore::Change& change) {
+        if (services.scene().colors || (services.store().hasVolume() && services.scene().session.variable().derivation))
+            opening.editInJob(text, change);
+        else
+            services.store().edit(text, mergeKey, change);
+    });
     rows->add("profile", {.id = "profileCombo"});
     auto* along = static_cast<QComboBox*>(rows->add("along", {.id = "alongCombo"}));
     rows->follow();
@@ -83,10 +91,10 @@ void addDefinitions(Services& services, QFormLayout& form) {
     follow();
 }
 
-void addMeasuring(Services& services, QFormLayout& form) {
+void addMeasuring(Services& services, OpenController& opening, QFormLayout& form) {
     const RowStep step{QObject::tr("Settings of the figures"), "measure-settings"};
     addHeading(form, QObject::tr("Saliency and visibility"));
-    addDefinitions(services, form);
+    addDefinitions(services, opening, form);
     auto* saliency = new SettingRows(services, form,
                                      settingPart<SaliencyOptions>(&Session::measure, &MeasureSettings::saliency), step);
     saliency->add("sigma", {.id = "sigmaSpin", .decimals = 3, .step = 0.1});
@@ -105,12 +113,12 @@ void addMeasuring(Services& services, QFormLayout& form) {
     for (SettingRows* rows : {saliency, shares, engine}) rows->follow();
 }
 
-QWidget* makePanel(Services& services, QWidget* parent) {
+QWidget* makePanel(Services& services, OpenController& opening, QWidget* parent) {
     auto* panel = named(new QWidget(parent), "settingsPanel");
     QFormLayout* const form = scrolledForm(panel, 5);
     form->setFieldGrowthPolicy(QFormLayout::ExpandingFieldsGrow);
     addOptimization(services, *form);
-    addMeasuring(services, *form);
+    addMeasuring(services, opening, *form);
     return panel;
 }
 
@@ -122,7 +130,9 @@ PanelInfo settingsPanel() {
             .tabOf = "features",
             .keys = QKeySequence("Ctrl+8"),
             .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),
-            .make = [](Services& services, Controllers&, QWidget* parent) { return makePanel(services, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return makePanel(services, controllers.opening, parent);
+            }};
 }
 
 } // namespace pellucid::gui

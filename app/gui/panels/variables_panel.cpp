@@ -34,11 +34,16 @@ enum Column { kName, kDrives, kOrigin, kGrid, kRange, kColumns };
 
 QString textOf(const std::string& text) { return QString::fromStdString(text); }
 
-QString formulaOf(const Derivation& d) {
+QString formulaOf(const Session& session, const Derivation& d) {
     switch (d.kind) {
     case Derivation::Kind::Gradient:
         return QObject::tr("|∇%1| of values scaled to 0 … 1, per d0").arg(textOf(d.of));
     case Derivation::Kind::Volatility:
+        if (session.measure->profile == Profile::Published)
+            return QObject::tr("Published: sample standard deviation of %1, each frame scaled to 0 … 1, over the "
+                               "latest %L2 frames, stretched to 0 … 1")
+                .arg(textOf(d.of))
+                .arg(d.frames);
         return QObject::tr("Standard deviation of %1, scaled to 0 … 1, over the latest %L2 frames")
             .arg(textOf(d.of))
             .arg(d.frames);
@@ -170,7 +175,7 @@ VariablesPanel::VariablesPanel(Services& services, OpenController& opening, QWid
     });
     lookAtVariables();
     followParts(
-        services, this, [this] { follow(); }, &Session::variables, &Session::hsb);
+        services, this, [this] { follow(); }, &Session::variables, &Session::hsb, &Session::measure);
 }
 
 void VariablesPanel::makeList() {
@@ -231,7 +236,7 @@ QTreeWidgetItem* VariablesPanel::addToList(const Variable& v) {
     item->setText(kName, name);
     item->setData(kName, Qt::UserRole, name);
     item->setText(kOrigin, originText(v));
-    item->setToolTip(kOrigin, v.derivation ? formulaOf(*v.derivation) : textOf(v.source.path));
+    item->setToolTip(kOrigin, v.derivation ? formulaOf(session, *v.derivation) : textOf(v.source.path));
     QStringList drives;
     const std::pair<Channel, QString> channels[] = {{Channel::Opacity, tr("opacity")},
                                                     {Channel::Saturation, tr("saturation")},

@@ -58,7 +58,11 @@ QString PaletteBar::valueText(double intensity) const {
     return numberText(volume.valueOfIntensity(intensity), volume.range().hi - volume.range().lo);
 }
 
-std::optional<double> PaletteBar::marked() const { return m_services.store().session().refine->intensity; }
+std::optional<double> PaletteBar::marked() const {
+    const RefineSettings& favoured = *m_services.store().session().refine;
+    const bool known = favoured.hue && m_services.scene().volume && !m_services.scene().colors;
+    return known ? m_refining.options().priority.intensity : favoured.intensity;
+}
 
 void PaletteBar::paintEvent(QPaintEvent*) {
     QPainter painter(this);

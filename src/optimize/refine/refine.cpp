@@ -15,7 +15,7 @@ constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 /// The greedy search (3.4.2). A move changes two edges at most, and nothing else is computed anew.
 RefineResult refineGreedy(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
                           const JobControl& job) {
-    EdgeLine line(histogram, tf, options.priority);
+    EdgeLine line(histogram, tf, options.priority, options.profile);
     RefineResult result = startOf(line, tf);
     EnergyCurve curve;
     curve.add(result.energyMovableBefore);
@@ -43,11 +43,13 @@ RefineResult refineGreedy(const Histogram& histogram, const TransferFunction& tf
     while (!which.empty() && result.iterations < options.maxIterations &&
            !(options.untilStable && sinceBest >= patience)) {
         if (result.iterations % kAskEvery == 0) job.throwIfStopped();
-        std::size_t heaviest = 0, lightest = 0; // of equals the lower index
-        for (std::size_t i = 1; i < weights.size(); ++i) {
-            if (weights[i] > weights[heaviest]) heaviest = i;
-            if (weights[i] < weights[lightest]) lightest = i;
+        std::size_t heaviest = kNone, lightest = kNone; // of equals the lower index
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            if (line.isSkipped(which[i])) continue;
+            if (heaviest == kNone || weights[i] > weights[heaviest]) heaviest = i;
+            if (lightest == kNone || weights[i] < weights[lightest]) lightest = i;
         }
+        if (heaviest == kNone) break;
         const std::size_t down = line.endToMove(which[heaviest], true), up = line.endToMove(which[lightest], false);
         const double rise = line.stepUp(options, down, up);
         move(down, -options.stepDown);
@@ -118,10 +120,12 @@ void RefineOptions::validate() const {
     if (total && !(*total >= 0)) throw UsageError("the total opacity must not be negative", "refine", "correct it");
 }
 
-std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf,
-                                const RefinePriority& priority) {
-    if (movesFeatures(tf)) return FeatureLine(histogram, tf, priority).weights();
-    return EdgeLine(histogram, tf, priority).weights();
+std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf, const RefinePriority& priority,
+                                Profile profile) {
+    RefineOptions by;
+    by.profile = profile;
+    if (movesFeatures(tf, by)) return FeatureLine(histogram, tf, priority).weights();
+    return EdgeLine(histogram, tf, priority, profile).weights();
 }
 
 double edgeEnergy(const std::vector<double>& edges) { return energyOf(edges); }
@@ -147,11 +151,14 @@ RefineComparison compareMethods(const Histogram& histogram, const TransferFuncti
     by.method = RefineMethod::Greedy;
     const RefineResult greedy = refine(histogram, tf, by, job);
     by.method = RefineMethod::Exact;
-    const bool features = movesFeatures(tf); // both of what greedy moves
+    by.priority = {};
+    const bool features = movesFeatures(tf, by); // both of what greedy moves
+    by.priority = options.priority;
     by.total =
         features ? FeatureLine(histogram, greedy.tf, options.priority).movableAmount() : movableOpacity(greedy.tf);
-    // From there, so that it is never worse.
-    const RefineResult exact = (features ? refineFeatures : refineExact)(histogram, greedy.tf, by, job);
+    // From there, so that it is never worse; published, the edges that take part are those of the start.
+    const TransferFunction& start = options.profile == Profile::Published ? tf : greedy.tf;
+    const RefineResult exact = (features ? refineFeatures : refineExact)(histogram, start, by, job);
     return {*by.total, greedy.energyMovableAfter, exact.energyMovableAfter, exact.tf};
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/job.h"
 #include "base/setting.h"
+#include "render/profile.h"
 #include "tf/transfer_function.h"
 #include "volume/histogram.h"
 
@@ -45,6 +46,9 @@ struct RefineSteps {
 template <>
 std::span<const Setting> settingsOf<RefineSteps>();
 
+/// Both steps of the published profile.
+inline constexpr double kPublishedStep = 1.0 / 255;
+
 struct RefineOptions : RefineSteps {
     RefinePriority priority;
     /// Greedy: false goes on to maxIterations whether or not anything still improves.
@@ -52,6 +56,9 @@ struct RefineOptions : RefineSteps {
     /// Exact: the sum of the movable points' opacities, clamped to [0, their number]; empty: as in the start, which is
     /// what equal steps up and down keep until one of them meets a bound.
     std::optional<double> total;
+    /// Published: edges weigh, and distances are, as docs/method.md, "The published profile", says; the steps are
+    /// kPublishedStep then (refineOptions() in session/refine_priority.h). Follows from MeasureSettings::profile.
+    Profile profile = Profile::Default;
 
     /// Throws UsageError: steps out of range, two priorities, an intensity outside [0,1], total < 0.
     void validate() const;
@@ -71,16 +78,18 @@ struct RefineResult {
 };
 
 /// Distance factors of pointsWithEnds(): |x0 − x_i| (3.6), the region's W_R (3.11), 1 without a priority. Where all
-/// points have the region's one colour W_R is 1/n. Throws UsageError as RefineOptions::validate() does.
-std::vector<double> pointFactors(const TransferFunction& tf, const RefinePriority& priority);
+/// points have the region's one colour W_R is 1/n. Published: |x0 − x_i|, or the differences of hue from the region's
+/// pixels added up, over their sum. Throws UsageError as RefineOptions::validate() does.
+std::vector<double> pointFactors(const TransferFunction& tf, const RefinePriority& priority,
+                                 Profile profile = Profile::Default);
 /// The intensity whose colour is nearest in hue (any real, degrees); of equally near ones the most opaque, then the
 /// lowest. Throws Error where every colour is grey.
 double intensityOfHue(const TransferFunction& tf, double hueDegrees);
 
-/// Edge weights e(i) of `tf` (3.3), (3.8), (3.13), integrated exactly: n+1 numbers, one per segment of
-/// pointsWithEnds().
+/// Edge weights e(i) of `tf` (3.3), (3.8), (3.13), integrated exactly (published: added up over whole bins): n+1
+/// numbers, one per segment of pointsWithEnds().
 std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf,
-                                const RefinePriority& priority = {});
+                                const RefinePriority& priority = {}, Profile profile = Profile::Default);
 /// Σ (e − ē)² (3.4).
 double edgeEnergy(const std::vector<double>& edges);
 /// Sum of the opacities of the points that are not fixed.

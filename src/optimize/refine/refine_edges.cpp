@@ -39,21 +39,52 @@ EdgeCoefficients edgeCoefficients(const std::vector<double>& information, double
     return e;
 }
 
-EdgeLine::EdgeLine(const Histogram& histogram, const TransferFunction& tf, const RefinePriority& priority)
-    : factor(pointFactors(tf, priority)), information(informationOf(histogram)) {
+double wholeBin(double x, std::size_t bins) {
+    constexpr double kRounding = 1e-9; // of a bin
+    const double place = x * static_cast<double>(bins - 1), whole = std::round(place);
+    return std::abs(place - whole) < kRounding ? whole : place;
+}
+
+EdgeCoefficients summedCoefficients(const std::vector<double>& information, double x0, double x1, double d0,
+                                    double d1) {
+    EdgeCoefficients e;
+    const double from = wholeBin(x0, information.size()), to = wholeBin(x1, information.size());
+    for (double bin = std::ceil(from); bin < to; ++bin) {
+        const double t = (bin - from) / (to - from);
+        const double g = information[static_cast<std::size_t>(bin)] * (d0 + (d1 - d0) * t);
+        e.left += g * (1 - t);
+        e.right += g * t;
+    }
+    return e;
+}
+
+EdgeLine::EdgeLine(const Histogram& histogram, const TransferFunction& tf, const RefinePriority& priority,
+                   Profile definitions)
+    : profile(definitions), factor(pointFactors(tf, priority, definitions)), information(informationOf(histogram)) {
     const std::vector<ControlPoint> all = tf.pointsWithEnds();
     firstOwn = tf.points.empty() || tf.points.front().x > 0 ? 1 : 0;
-    const int bins = static_cast<int>(information.size());
     for (const ControlPoint& p : all) {
         x.push_back(p.x);
         opacity.push_back(p.opacity);
         fixed.push_back(p.fixed);
-        pointInformation.push_back(information[static_cast<std::size_t>(histogramBin(p.x, bins))]);
     }
-    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-        coefficients.push_back(edgeCoefficients(information, x[i], x[i + 1], factor[i], factor[i + 1]));
-        if (!fixed[i] || !fixed[i + 1]) participating.push_back(i);
-    }
+    weigh();
+    for (std::size_t i = 0; i < edges(); ++i)
+        if ((!fixed[i] || !fixed[i + 1]) && !isSkipped(i)) participating.push_back(i);
+}
+
+void EdgeLine::weigh() {
+    const bool published = profile == Profile::Published;
+    const std::size_t bins = information.size();
+    pointInformation.clear();
+    for (const double at : x)
+        pointInformation.push_back(
+            information[published ? static_cast<std::size_t>(wholeBin(at, bins))
+                                  : static_cast<std::size_t>(histogramBin(at, static_cast<int>(bins)))]);
+    coefficients.clear();
+    for (std::size_t i = 0; i + 1 < x.size(); ++i)
+        coefficients.push_back(
+            (published ? summedCoefficients : edgeCoefficients)(information, x[i], x[i + 1], factor[i], factor[i + 1]));
 }
 
 std::vector<double> EdgeLine::weights() const {

@@ -6,7 +6,7 @@ namespace pellucid {
 
 RefineResult refineExact(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
                          const JobControl& job) {
-    EdgeLine line(histogram, tf, options.priority);
+    EdgeLine line(histogram, tf, options.priority, options.profile);
     RefineResult result = startOf(line, tf);
     std::vector<std::size_t> movable;
     std::vector<double> start;

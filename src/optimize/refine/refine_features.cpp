@@ -176,6 +176,7 @@ std::vector<double> exactPeaks(const FeatureLine& line, const RefineOptions& opt
 } // namespace
 
 bool movesFeatures(const TransferFunction& tf, const RefineOptions& options) {
+    if (options.profile == Profile::Published) return false;
     if (options.method == RefineMethod::Exact && options.priority.any() && tf.features.size() > 1) return true;
     for (const Feature& f : tf.features)
         for (const Feature& g : tf.features)
@@ -200,7 +201,9 @@ std::vector<RefineEdge> refineEdges(const TransferFunction& tf, const RefineOpti
     }
     const std::vector<ControlPoint> points = tf.pointsWithEnds();
     for (std::size_t i = 0; i + 1 < points.size(); ++i)
-        edges.push_back({points[i].x, points[i + 1].x, !points[i].fixed || !points[i + 1].fixed});
+        edges.push_back({points[i].x, points[i + 1].x,
+                         (!points[i].fixed || !points[i + 1].fixed) &&
+                             (options.profile != Profile::Published || points[i].opacity > 0)});
     return edges;
 }
 
@@ -209,7 +212,7 @@ std::vector<double> opacityParts(const Histogram& histogram, const TransferFunct
 }
 
 std::optional<std::size_t> prioritizedFeature(const Histogram& histogram, const TransferFunction& tf,
-                                              const RefinePriority& priority) {
+                                              const RefinePriority& priority, Profile profile) {
     if (tf.features.empty()) return {};
     std::vector<double> distance;
     if (priority.intensity) {
@@ -219,7 +222,7 @@ std::optional<std::size_t> prioritizedFeature(const Histogram& histogram, const 
     } else if (!priority.region.empty()) {
         const TransferFunction full = withFullPeaks(tf);
         const std::vector<double> density = densityOf(histogram);
-        distance = integrals(density, full, pointFactors(full, priority));
+        distance = integrals(density, full, pointFactors(full, priority, profile));
         const std::vector<double> amount = integrals(density, full, ones(full));
         for (std::size_t f = 0; f < distance.size(); ++f)
             distance[f] = amount[f] > 0 && !tf.features[f].hidden ? distance[f] / amount[f]

@@ -11,7 +11,7 @@
 namespace pellucid {
 
 /// Whether refinement moves the features of `tf` as wholes, not its points: two of them meet where one is not
-/// transparent, as no tents do; or Exact is to bring out one of several.
+/// transparent, as no tents do; or Exact is to bring out one of several. Never by the published profile.
 bool movesFeatures(const TransferFunction& tf, const RefineOptions& options = {});
 
 /// Whether a control point of the feature is fixed above 0: then it does not move as a whole.
@@ -29,7 +29,7 @@ std::vector<RefineEdge> refineEdges(const TransferFunction& tf, const RefineOpti
 /// the one whose colours are nearest, on average over its voxels. Empty without a priority or where no feature can be
 /// told.
 std::optional<std::size_t> prioritizedFeature(const Histogram& histogram, const TransferFunction& tf,
-                                              const RefinePriority& priority);
+                                              const RefinePriority& priority, Profile profile = Profile::Default);
 
 /// One number per feature: its part of Σ α·p, the mean opacity of all voxels, [0,1].
 std::vector<double> opacityParts(const Histogram& histogram, const TransferFunction& tf);

@@ -52,11 +52,13 @@ std::vector<std::size_t> heldPoints(const TransferFunction& before, const Transf
 }
 
 TransferFunction liveStart(const Histogram& histogram, const TransferFunction& before, const TransferFunction& after,
-                           const std::vector<std::size_t>& held) {
+                           const std::vector<std::size_t>& held, const RefineOptions& options) {
+    RefineOptions bare; // a choice makes no difference
+    bare.profile = options.profile;
     TransferFunction start = after;
     for (const std::size_t i : held) start.points[i].fixed = true;
     if (held.empty()) return start;
-    if (movesFeatures(after)) return liveStartOfFeatures(histogram, before, std::move(start));
+    if (movesFeatures(after, bare)) return liveStartOfFeatures(histogram, before, std::move(start));
     if (before.points.size() != after.points.size()) return start;
     double given = 0, others = 0;
     for (const std::size_t i : held) given += after.points[i].opacity - before.points[i].opacity;

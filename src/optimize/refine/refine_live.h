@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "optimize/refine/refine.h"
 #include "tf/transfer_function.h"
 #include "volume/histogram.h"
 
@@ -19,8 +20,8 @@ std::vector<std::size_t> heldPoints(const TransferFunction& before, const Transf
 
 /// What live refinement of an edit starts from: held points are fixed, and the others have given way, or filled up, so
 /// that the total opacity is as it was; equal steps up and down keep it. Where features move as wholes, the others keep
-/// the mean opacity of all voxels.
+/// the mean opacity of all voxels. `options`: those of the refinement; only its profile counts.
 TransferFunction liveStart(const Histogram& histogram, const TransferFunction& before, const TransferFunction& after,
-                           const std::vector<std::size_t>& held);
+                           const std::vector<std::size_t>& held, const RefineOptions& options = {});
 
 } // namespace pellucid

@@ -43,10 +43,11 @@ double placeOfPeak(const TransferFunction& tf, const Feature& f) {
     return best;
 }
 
-std::optional<Chosen> chosenOf(const Histogram& histogram, const TransferFunction& tf, const RefinePriority& priority) {
+std::optional<Chosen> chosenOf(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options) {
+    const RefinePriority& priority = options.priority;
     Chosen chosen;
     if (tf.features.size() >= 2) {
-        chosen.feature = prioritizedFeature(histogram, tf, priority);
+        chosen.feature = prioritizedFeature(histogram, tf, priority, options.profile);
         if (!chosen.feature) return {};
         const Feature& f = tf.features[*chosen.feature];
         chosen.x = priority.intensity.value_or(placeOfPeak(tf, f));
@@ -57,7 +58,7 @@ std::optional<Chosen> chosenOf(const Histogram& histogram, const TransferFunctio
         chosen.x = *priority.intensity;
         return chosen;
     }
-    const std::vector<double> factors = pointFactors(tf, priority);
+    const std::vector<double> factors = pointFactors(tf, priority, options.profile);
     const std::size_t firstOwn = tf.points.empty() || tf.points.front().x > 0 ? 1 : 0;
     if (tf.points.empty()) return {};
     std::size_t nearest = 0;
@@ -156,7 +157,7 @@ RefineMethod otherThan(RefineMethod method) {
 std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const TransferFunction& before,
                                                const TransferFunction& after, const RefineOptions& options,
                                                const RefineAgain& again) {
-    const std::optional<Chosen> chosen = chosenOf(histogram, before, options.priority);
+    const std::optional<Chosen> chosen = chosenOf(histogram, before, options);
     if (!options.priority.any()) return {};
     if (!chosen) {
         PriorityOutcome none;
@@ -195,8 +196,7 @@ std::optional<Darkening> darkeningOf(const RayBundle& rays, const Histogram& his
     dark.before = strength(before);
     dark.after = strength(after);
     if (!(dark.after < kFaintCoverage && dark.after < dark.before)) return {};
-    const std::optional<Chosen> chosen =
-        options.priority.any() ? chosenOf(histogram, before, options.priority) : std::nullopt;
+    const std::optional<Chosen> chosen = options.priority.any() ? chosenOf(histogram, before, options) : std::nullopt;
     // Visible, and what was chosen has not lost.
     const auto helped = [&](const TransferFunction& tf, double least) {
         dark.helped = strength(tf);

@@ -48,6 +48,28 @@ std::vector<double> regionFactors(const TransferFunction& tf, const std::vector<
     return factors;
 }
 
+/// Of the published profile: hues in turns, the way round 0 counted as far as it is; 1 where one of them is grey.
+double plainHueDistance(const Hsv& a, const Hsv& b) {
+    if (!(a.saturation > 0) || !(b.saturation > 0)) return 1;
+    return std::abs(a.hueDegrees - b.hueDegrees) / 360;
+}
+
+/// Distances of all points over their sum; where all are 0, as regionFactors() has it.
+std::vector<double> publishedFactors(const std::vector<ControlPoint>& all, const RefinePriority& priority) {
+    std::vector<std::pair<Hsv, double>> region;
+    for (const RegionColor& c : priority.region) region.emplace_back(hsvFromRgb(c.color), c.count);
+    std::vector<double> factors;
+    double sum = 0;
+    for (const ControlPoint& p : all) {
+        double distance = priority.intensity ? std::abs(*priority.intensity - p.x) : 0;
+        for (const auto& [hsv, count] : region) distance += count * plainHueDistance(hsv, hsvFromRgb(p.color));
+        factors.push_back(distance);
+        sum += distance;
+    }
+    for (double& f : factors) f = sum > 0 ? f / sum : 1 / static_cast<double>(all.size());
+    return factors;
+}
+
 double hueDistance(double a, double b) {
     const double d = std::fmod(std::abs(a - b), 360.0);
     return std::min(d, 360.0 - d);
@@ -55,11 +77,12 @@ double hueDistance(double a, double b) {
 
 } // namespace
 
-std::vector<double> pointFactors(const TransferFunction& tf, const RefinePriority& priority) {
+std::vector<double> pointFactors(const TransferFunction& tf, const RefinePriority& priority, Profile profile) {
     RefineOptions options;
     options.priority = priority;
     options.validate();
     const std::vector<ControlPoint> all = tf.pointsWithEnds();
+    if (profile == Profile::Published && priority.any()) return publishedFactors(all, priority);
     if (!priority.region.empty()) return regionFactors(tf, all, priority.region);
     std::vector<double> factors;
     for (const ControlPoint& p : all) factors.push_back(priority.intensity ? std::abs(*priority.intensity - p.x) : 1.0);

@@ -10,12 +10,7 @@ namespace {
 /// e(i) of every edge, and s at every point, from the histogram.
 void integrate(EdgeLine& line, const Histogram& histogram) {
     line.information = informationOf(histogram);
-    const int bins = static_cast<int>(line.information.size());
-    for (std::size_t i = 0; i < line.points(); ++i)
-        line.pointInformation[i] = line.information[static_cast<std::size_t>(histogramBin(line.x[i], bins))];
-    for (std::size_t i = 0; i < line.edges(); ++i)
-        line.coefficients[i] =
-            edgeCoefficients(line.information, line.x[i], line.x[i + 1], line.factor[i], line.factor[i + 1]);
+    line.weigh();
 }
 
 } // namespace
@@ -23,7 +18,7 @@ void integrate(EdgeLine& line, const Histogram& histogram) {
 RefineResult refineReference(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
                              const JobControl& job) {
     options.validate();
-    EdgeLine line(histogram, tf, options.priority);
+    EdgeLine line(histogram, tf, options.priority, options.profile);
     RefineResult result = startOf(line, tf);
     EnergyCurve curve;
     curve.add(result.energyMovableBefore);
@@ -36,7 +31,10 @@ RefineResult refineReference(const Histogram& histogram, const TransferFunction&
         integrate(line, histogram);
         const std::vector<double> edges = line.weights();
         const auto lighter = [&](std::size_t a, std::size_t b) { return edges[a] < edges[b]; };
-        const auto& which = line.participating;
+        std::vector<std::size_t> which;
+        for (const std::size_t i : line.participating)
+            if (!line.isSkipped(i)) which.push_back(i);
+        if (which.empty()) break;
         const std::size_t heaviest = *std::ranges::max_element(which, lighter);
         const std::size_t lightest = *std::ranges::min_element(which, lighter);
         const std::size_t down = line.endToMove(heaviest, true), up = line.endToMove(lightest, false);
