@@ -11,6 +11,7 @@
 #include "report/drawing_file.h"
 #include "resolve.h"
 #include "session/target_presets.h"
+#include "session/variable_edits.h"
 #include "threads_plot.h"
 
 namespace pellucid::cli {
@@ -79,7 +80,7 @@ public:
             if (!scene.tf.spec) scene.tf.spec = "tents:3";
         }
         m_inputs = inputsOf(scene, kWork, m_results.notices);
-        m_mainVolume = m_inputs.session.variable().source.path;
+        m_mainVolume = dataVariable(m_inputs.session).source.path;
         m_mainTf = scene.tf.spec.value_or(scene.sessionFile ? "session" : "default");
         m_bench.threads = most ? std::vector{*most} : std::vector{1, 2};
         if (most) m_bench.searchThreads = searchThreadsUpTo(*most);

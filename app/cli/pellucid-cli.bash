@@ -34,6 +34,7 @@ _pellucid_cli() {
         --paths) choices="newton parallel line fixed runs" ;;
         --show) choices="F" ;;
         --hsb) choices="saturation= brightness= hue= alpha= off" ;;
+        --features-of) choices="gradient volatility: difference: gradient: x" ;;
         --ground-map) choices="terrain hue spiral ember sand grey blue-orange blue-red" ;;
         --ground)
             choices=$("$program" samples 2>/dev/null | sed -n 's/^\(sample:[^ ]*\) .*/\1/p')

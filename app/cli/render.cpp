@@ -48,27 +48,35 @@ bool isJpeg(const std::string& path) {
 void check(const Options& o) {
     const bool slice = o.slice.at.has_value(), field = o.scene.drawsField();
     const bool mode = o.scene.picture.given.has("mode"), ground = o.scene.ground.path.has_value();
-    const char* const ofData = o.slice.window                     ? "--window"
-                               : o.slice.given.has("tf_strength") ? "--tf-strength"
-                                                                  : nullptr;
     refuse({{o.scene.picture.transparent && isJpeg(o.out), "a JPEG file cannot be transparent",
              "--background transparent", "write a PNG, TIFF or EXR file"}});
     o.slice.check();
-    refuse(
-        {{slice && o.annotate.any(), "a slice is drawn without annotations", "--annotate", "leave it out"},
-         {slice && o.scene.picture.feature && !field, "a slice always shows all features", "--feature", "leave it out"},
-         {field && ofData != nullptr, "a field does not use the colours of the transfer function", ofData,
-          "use --field-top or --field-colormap"},
-         {field && mode, "a field is always drawn by emission and absorption", "--mode", "leave it out"},
-         {slice && ground, "a slice is drawn without the ground", "--ground", "leave it out"},
-         {field && ground, "a field is drawn without the ground", "--ground", "leave it out"},
-         {slice && mode, "a slice has no rays, so it has no mode", "--mode", "leave it out"}});
+    refuse({{field && mode, "a field is always drawn by emission and absorption", "--mode", "leave it out"},
+            {slice && ground, "a slice is drawn without the ground", "--ground", "leave it out"},
+            {field && ground, "a field is drawn without the ground", "--ground", "leave it out"},
+            {slice && mode, "a slice has no rays, so it has no mode", "--mode", "leave it out"}});
 }
 
-/// The field that the session and the options want drawn; empty: the data. A session's is of views, not of slices.
-std::optional<Field> fieldOf(const Options& o, const Scene& scene, Progress& progress) {
+/// What can be told of a slice as soon as it is known whether the session, too, wants a field.
+void checkSlice(const Options& o, bool field) {
+    if (!o.slice.at) return;
+    AnnotationChoice others = o.annotate;
+    others.legend = others.title = false;
+    const char* const ofData = o.slice.lookOfData();
+    refuse(
+        {{o.annotate.any() && !field, "a slice of the data is drawn without annotations", "--annotate", "leave it out"},
+         {others.any(), "a slice of a field has no other annotations than these", "--annotate",
+          "give legend,title, or leave it out"},
+         {o.scene.picture.feature && !field, "a slice of the data always shows all features", "--feature",
+          "leave it out"},
+         {field && ofData != nullptr, "a field does not use the colours of the transfer function", ofData,
+          "use --field-top or --field-colormap, or draw the data with --field none"}});
+}
+
+/// The field that the session and the options want drawn; empty: the data.
+std::optional<Field> fieldOf(const Scene& scene, Progress& progress) {
     const FieldView& view = *scene.session.field;
-    if (!view.kind || (o.slice.at && !o.scene.drawsField())) return {};
+    if (!view.kind) return {};
     Workspace workspace;
     const MeasureInput input = measureInput(scene);
     const bool ofView = dependsOnView(*view.kind);
@@ -93,23 +101,22 @@ struct Drawn {
     Json slice = nullptr;    ///< where it lies; null: it is none
 };
 
-Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& picture) {
-    const Geometry& g = picture.volume->geometry();
+Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field) {
+    const SliceInput input = o.slice.inputOf(scene, field ? &*field : nullptr);
+    const Geometry& g = input.volume->geometry();
     const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
-    SliceSettings settings = o.slice.settingsOf(scene);
-    settings.clipping = picture.settings.clipping;
-    settings.colors = picture.settings.colors;
-    if (o.scene.drawsField()) {
-        settings.tfStrength = 1;
-        settings.window = picture.volume->range();
-    }
     const Stopwatch drawing;
-    Drawn drawn{renderSlice(*picture.volume, picture.tf, plane, settings)};
+    Drawn drawn{renderSlice(*input.volume, input.tf, plane, input.settings)};
     paintBackground(drawn.image, picture.settings);
     drawn.seconds = drawing.seconds();
-    drawn.slice = {{"axis", std::string(1, "xyz"[plane.axis])}, {"name", sliceName(g, plane.axis)},
-                   {"position", o.slice.at->fraction},          {"voxel", plane.position},
-                   {"window", jsonFromRange(settings.window)},  {"tf_strength", settings.tfStrength}};
+    drawn.slice = {{"axis", std::string(1, "xyz"[plane.axis])},
+                   {"name", sliceName(g, plane.axis)},
+                   {"position", o.slice.at->fraction},
+                   {"voxel", plane.position},
+                   {"window", jsonFromRange(input.settings.window)},
+                   {"tf_strength", input.settings.tfStrength}};
+    if (field && o.annotate.any())
+        drawMarks(drawn.image, annotationMarks(fieldAnnotationInput(picture, scene, *field, o.annotate)));
     return drawn;
 }
 
@@ -130,17 +137,18 @@ Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     check(o);
     const bool field = o.scene.drawsField();
+    if (field || !o.scene.sessionFile) checkSlice(o, field);
     const Opened opened = resolve(o.scene, progress, {field ? toMeasureAndDrawField() : toView("drawing"), field});
     const Scene& scene = opened.scene;
     PictureInput picture = o.scene.picture.pictureOf(scene);
-    const std::optional<Field> shown = fieldOf(o, scene, progress);
+    checkSlice(o, scene.session.field->kind.has_value());
+    const std::optional<Field> shown = fieldOf(scene, progress);
     if (shown) {
         const RenderSettings& s = picture.settings;
         picture = fieldPictureInput(scene, *shown, s.width, s.height, o.scene.picture.transparent);
         o.scene.picture.applyTo(picture);
-        if (o.slice.at) picture.tf = fieldSliceTf(picture.tf);
     }
-    Drawn drawn = o.slice.at ? drawSlice(o, scene, picture) : drawView(o, scene, picture, shown, progress);
+    Drawn drawn = o.slice.at ? drawSlice(o, scene, picture, shown) : drawView(o, scene, picture, shown, progress);
     progress.phase("writing");
     writeImage(drawn.image, o.out);
 

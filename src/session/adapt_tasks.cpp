@@ -84,6 +84,17 @@ void addTf(Hash& hash, const TransferFunction& tf) {
     if (tf.range) hash.add(*tf.range);
 }
 
+/// How a variable is made, down to the plain one; empty: it is that. A damaged file may have an endless one.
+std::string originOf(const Session& session, const Variable& variable) {
+    std::string text;
+    const Variable* made = &variable;
+    for (int depth = 0; depth < 100 && made != nullptr && made->derivation; ++depth) {
+        text += (depth > 0 ? " of " : "") + made->derivation->text();
+        made = session.variableNamed(made->derivation->of);
+    }
+    return text;
+}
+
 /// Fingerprints of one session: what its frames have in common is hashed once.
 class Fingerprints {
 public:
@@ -113,7 +124,7 @@ public:
         const std::size_t variables = coloured ? session.variables->size() : 1;
         for (std::size_t i = 0; i < variables; ++i) {
             const Variable& v = (*session.variables)[i];
-            m_common.add(v.derivation ? v.derivation->text() : std::string());
+            m_common.add(originOf(session, v));
             if (v.window) m_common.add(*v.window);
             if (i > 0 || v.derivation) { // of the first one, plain, frame by frame
                 m_common.add(v.name);

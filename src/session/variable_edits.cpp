@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "session/scene_data.h"
 
 namespace pellucid {
@@ -44,9 +45,11 @@ void renameInChannels(Session& session, const Rename& rename) {
     editChannels(session, [&](std::string& driver) { driver = renamedIn(session, driver, rename); });
 }
 
+constexpr std::size_t kDeepest = 100; ///< derivations of derivations that are followed
+
 /// Whether `text` is `name` or made of it. A damaged file may have variables that are made of themselves.
 bool refersTo(const Session& session, std::string text, const std::string& name) {
-    for (std::size_t depth = 0; depth < 100; ++depth) {
+    for (std::size_t depth = 0; depth < kDeepest; ++depth) {
         if (text == name) return true;
         const auto derivation = derivationOf(session, text);
         if (!derivation) return false;
@@ -55,14 +58,11 @@ bool refersTo(const Session& session, std::string text, const std::string& name)
     return false;
 }
 
-void exchange(Session& session, const std::string& a, const std::string& b) {
-    if (a == b) return;
-    renameInChannels(session, [&](const std::string& name) { return name == a ? b : name == b ? a : name; });
+/// The variable takes the place of the first one in the list, and that one its place.
+void putFirst(Session& session, const std::string& name) {
     session.variables.edit([&](std::vector<Variable>& all) {
-        const auto find = [&](const std::string& name) {
-            return std::find_if(all.begin(), all.end(), [&](const Variable& v) { return v.name == name; });
-        };
-        std::iter_swap(find(a), find(b));
+        std::iter_swap(all.begin(),
+                       std::find_if(all.begin(), all.end(), [&](const Variable& v) { return v.name == name; }));
     });
 }
 
@@ -79,6 +79,26 @@ std::string titleOf(const Derivation& d) {
     return d.of;
 }
 
+/// The name of the variable that is `derivation`, or is made so: channels that are driven by it are by that name then.
+std::string variableOf(Session& session, const Derivation& derivation) {
+    const auto made = std::find_if(
+        session.variables->begin(), session.variables->end(),
+        [text = derivation.text()](const Variable& v) { return v.derivation && v.derivation->text() == text; });
+    std::string name;
+    if (made != session.variables->end()) {
+        name = made->name;
+    } else {
+        Variable variable;
+        variable.name = titleOf(derivation);
+        variable.derivation = derivation;
+        name = addVariable(session, std::move(variable));
+    }
+    editChannels(session, [&, text = derivation.text()](std::string& driver) {
+        if (driver == text) driver = name;
+    });
+    return name;
+}
+
 /// Of the channels' volatility: its text, or the variable that it is.
 std::string* volatilityIn(const Session& session, HsbMapping& hsb) {
     for (const auto channel : kDriven) {
@@ -91,6 +111,16 @@ std::string* volatilityIn(const Session& session, HsbMapping& hsb) {
 }
 
 } // namespace
+
+void requireVariable(const Session& session, std::string name) {
+    for (std::size_t depth = 0; session.variableNamed(name) == nullptr && depth < kDeepest; ++depth) {
+        const auto derivation = parseDerivation(name);
+        if (!derivation)
+            throw UsageError("there is no variable '" + name + "'", "",
+                             "the variables are " + joined(*session.variables, ", ", &Variable::name));
+        name = derivation->of;
+    }
+}
 
 std::string freeVariableName(const Session& session, const std::string& wish) {
     std::string name = wish;
@@ -170,19 +200,17 @@ std::string channelOf(const Session& session, Channel channel) {
 
 void setChannel(Session& session, Channel channel, const std::string& name) {
     if (channel == Channel::Opacity) {
+        const std::string first = session.variable().name;
         std::string wanted = name;
         if (session.variableNamed(name) == nullptr) {
             const auto derivation = parseDerivation(name);
             if (!derivation) return;
-            Variable variable;
-            variable.name = titleOf(*derivation);
-            variable.derivation = derivation;
-            wanted = addVariable(session, std::move(variable));
-            editChannels(session, [&](std::string& driver) {
-                if (driver == name) driver = wanted;
-            });
+            wanted = variableOf(session, *derivation);
         }
-        return exchange(session, session.variable().name, wanted);
+        renameInChannels(session, [&](const std::string& driver) {
+            return driver == first ? wanted : driver == wanted ? first : driver;
+        });
+        return putFirst(session, wanted);
     }
     session.hsb.edit([&](HsbMapping& hsb) { hsb.*driverOf(channel) = name; });
 }
@@ -206,6 +234,53 @@ std::string definitionOf(const Session& session, const Derivation& derivation) {
         return of + " less its values in frame " + std::to_string(derivation.reference) + ", in data units";
     }
     return {};
+}
+
+void setFeaturesOf(Session& session, const std::string& name) {
+    if (session.variableNamed(name) != nullptr) return putFirst(session, name);
+    requireVariable(session, name);
+    putFirst(session, variableOf(session, *parseDerivation(name)));
+}
+
+std::string featuresOf(const Session& session, const std::string& text) {
+    if (session.variableNamed(text) != nullptr) return text;
+    const std::string of = ":" + dataVariable(session).name;
+    if (text == "gradient") return text + of;
+    for (const std::string kind : {"volatility:", "difference:"})
+        if (text.starts_with(kind) && text.find(':', kind.size()) == std::string::npos)
+            return text.substr(0, kind.size() - 1) + of + ":" + text.substr(kind.size());
+    return text;
+}
+
+const Variable& dataVariable(const Session& session) {
+    std::string name = session.variable().name;
+    for (std::size_t depth = 0; depth < kDeepest; ++depth) {
+        const Variable* const variable = session.variableNamed(name);
+        if (variable != nullptr && !variable->derivation) return *variable;
+        const auto derivation = derivationOf(session, name);
+        if (!derivation) break;
+        name = derivation->of;
+    }
+    return session.variable(); // made of nothing that there is: resolving it tells
+}
+
+void setDataSource(Session& session, const VolumeSource& source) {
+    const std::string name = dataVariable(session).name;
+    session.variables.edit([&](std::vector<Variable>& all) {
+        for (Variable& v : all)
+            if (v.name == name) v.source = source;
+    });
+}
+
+std::optional<int> featureFrames(const Session& session) {
+    const auto& derivation = session.variable().derivation;
+    if (!derivation || derivation->kind != Derivation::Kind::Volatility) return {};
+    return derivation->frames;
+}
+
+void setFeatureFrames(Session& session, int frames) {
+    if (featureFrames(session))
+        session.variables.edit([frames](std::vector<Variable>& all) { all.front().derivation->frames = frames; });
 }
 
 std::optional<int> volatilityFrames(const Session& session) {

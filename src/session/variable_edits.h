@@ -12,6 +12,9 @@ namespace pellucid {
 /// What a variable can drive (thesis eq. 6.1). Opacity is driven by the first variable of the session.
 enum class Channel { Opacity, Saturation, Brightness, Hue };
 
+/// Throws UsageError where there is no variable `name`, nor what it is written to be made of.
+void requireVariable(const Session& session, std::string name);
+
 /// A name that no variable has yet: `wish`, else with a number behind it. Colons, which derivations are written with,
 /// become blanks.
 std::string freeVariableName(const Session& session, const std::string& wish);
@@ -41,6 +44,24 @@ void swapOpacityAndBrightness(Session& session);
 
 /// What the values of a derived variable are by the definitions of the session's profile, in words.
 std::string definitionOf(const Session& session, const Derivation& derivation);
+
+/// The first variable, whose features, curve and opacity are those of the session: one of its variables, or what is
+/// written like a derived one, which becomes one unless it is there already. Each keeps its transfer functions;
+/// channels stay with what they name. Throws UsageError where there is no variable of this name, or of that it is made
+/// of.
+void setFeaturesOf(Session& session, const std::string& name);
+/// What people may write for it: "gradient", "volatility:10" and "difference:0" are of the session's dataVariable(),
+/// where no variable is called so.
+std::string featuresOf(const Session& session, const std::string& text);
+
+/// The variable that the first one comes from: itself, or what it is made of in the end. Its source is what is opened;
+/// the session has variables.
+const Variable& dataVariable(const Session& session);
+void setDataSource(Session& session, const VolumeSource& source);
+
+/// Latest frames of the volatility that the features are of; empty where they are of something else.
+std::optional<int> featureFrames(const Session& session);
+void setFeatureFrames(Session& session, int frames);
 
 /// Latest frames of the volatility that drives a channel; empty where none does.
 std::optional<int> volatilityFrames(const Session& session);

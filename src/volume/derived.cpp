@@ -258,7 +258,6 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
         if (derivation.frames < 1 || derivation.frames > kMostFrames)
             throw UsageError("volatility of " + std::to_string(derivation.frames) + " frames", "variable " + title,
                              "give 1 to " + std::to_string(kMostFrames) + " frames");
-        listing.declaredRange = ValueRange{0, 0.5}; // no values of [0,1] deviate more
         if (volatility == VolatilityKind::Published) listing.declaredRange = ValueRange{0, 1};
         valuesOf = [sums = std::make_shared<VolatilitySums>(base, derivation.frames, volatility)](
                        const Volume& present, int frame, const JobControl& loading) {

@@ -5,6 +5,7 @@
 
 #include "cli_runner.h"
 #include "image_io/image_file.h"
+#include "tf/color_maps.h"
 #include "volume/loader.h"
 
 using namespace pellucid;
@@ -46,6 +47,60 @@ TEST_CASE("the visibility of a homogeneous slab falls as α(1 − α)^k", "[cli]
             for (const int x : {0, 3})
                 CHECK(field.value(static_cast<std::size_t>(x + 6 * (k + 5 * 2))) ==
                       Approx(0.3 * std::pow(0.7, k)).margin(1e-4));
+    }
+}
+
+TEST_CASE("a slice of a field has the field's values through its colour map", "[cli][fields]") {
+    const Workshop w;
+    // The slab above, across z: pixel (x, y) of 6 × 5 is voxel (x, 4 − y, 2), the eye is at the bottom. v = 0.3·0.7^k.
+    std::string values;
+    for (int i = 0; i < 6 * 5 * 6; ++i) values += static_cast<char>(100 + i % 6);
+    w.write("slab.raw", values);
+    w.write("flat.tf.json",
+            R"({"format":"pellucid-tf","version":1,"range":[0,200],"points":[{"x":0,"opacity":0.3,"color":"#ffffff"},
+                {"x":1,"opacity":0.3,"color":"#ffffff"}],"features":[{"name":"all","range":[0,1],"color":"#ffffff"}]})");
+    const Words large{"render", "slab.raw",  "--raw",          "6,5,6,u8", "--tf", "flat.tf.json",
+                      "--view", "0,0",       "--orthographic", "--engine", "cpu",  "--slice",
+                      "z:0.42", "--nearest", "--field-top",    "0.3"};
+    const Words slice = large + Words{"--size", "6x5"};
+    const auto drawn = [&](const std::string& file, const Words& options) {
+        const json answer = w.json(slice + options + Words{"--out", file});
+        CHECK(answer["field"]["kind"] == "visibility");
+        CHECK(answer["slice"]["axis"] == "z");
+        return readImage(w.path(file).string());
+    };
+    const Image picture = drawn("v.png", {"--field", "visibility"});
+    const ColorMap& ember = colorMapNamed("ember");
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 6; ++x) {
+            const Rgb expected = ember.colorAt(std::pow(0.7, 4 - y)); // of the top, 0.3
+            const float* p = picture.pixel(x, y);
+            for (const auto& [is, should] : {std::pair{p[0], expected.r}, {p[1], expected.g}, {p[2], expected.b}})
+                CHECK(is == Approx(should).margin(0.02)); // 8 bits, and the map is a line of 33 points
+        }
+    // Below the threshold there is nothing: 0.7⁴ = 0.24 and 0.7³ = 0.343 lie below 0.35 of the top.
+    const Image above = drawn("t.png", {"--field", "visibility", "--field-threshold", "0.35"});
+    for (int y = 0; y < 5; ++y) CHECK((above.pixel(2, y)[0] > 0.05f) == (y >= 2));
+
+    // A session that shows a field shows it in slices, too: the same picture.
+    w.write("s.pellucid.json", R"({"format":"pellucid-session","version":1,"variables":[{"name":"x","source":
+        {"path":"slab.raw","raw":{"dims":[6,5,6],"type":"u8","endian":"little","spacing":[1,1,1],"skip":0}},"transfer_functions":[]}],"field":{"kind":"visibility"}})");
+    CHECK(drawn("s.png", {"--session", "s.pellucid.json"}).rgba == picture.rgba);
+    const json data = w.json({"render", "--session", "s.pellucid.json", "--tf", "flat.tf.json", "--slice", "z:0.42",
+                              "--size", "6x5", "--field", "none", "--window", "100,105", "--out", "d.png"});
+    CHECK(data.count("field") == 0);
+    // Its legend and title are those of the picture of the field.
+    w.json(large + Words{"--size", "300x250", "--field", "visibility", "--out", "plain.png"});
+    w.json(large + Words{"--size", "300x250", "--field", "visibility", "--annotate", "legend,title", "--out", "l.png"});
+    CHECK(readImage(w.path("plain.png").string()).rgba != readImage(w.path("l.png").string()).rgba);
+    for (const auto& [options, says] :
+         {std::pair{Words{"--field", "visibility", "--annotate", "cube"}, "--annotate"},
+          std::pair{Words{"--field", "none", "--annotate", "legend"}, "--annotate"},
+          std::pair{Words{"--session", "s.pellucid.json", "--window", "0,1"}, "--window"}}) {
+        const Outcome wrong = w.run(slice + options + Words{"--out", "no.png"});
+        CHECK(wrong.status == 2);
+        CHECK(wrong.err.find(says) != std::string::npos);
+        CHECK_FALSE(w.has("no.png"));
     }
 }
 

@@ -4,13 +4,16 @@
 #include <QAction>
 #include <QDoubleSpinBox>
 #include <QFile>
+#include <QLabel>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QTemporaryDir>
 #include <QToolButton>
 
+#include "controllers/field_controller.h"
 #include "controllers/probe_controller.h"
 #include "store/view_edits.h"
+#include "tf/color_maps.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -364,6 +367,82 @@ TEST_CASE("the value under the mouse is the voxel's", "[slices]") {
     QEvent leave(QEvent::Leave);
     QCoreApplication::sendEvent(&y, &leave);
     CHECK_FALSE(w.services().selection().hoveredIntensity());
+}
+
+TEST_CASE("slices show the field that is chosen, through its colour map", "[slices][fields]") {
+    SliceWindow w;
+    const FieldController& fields = w.controllers().fields;
+    const QImage data = w.slice(2);
+    CHECK(w.pane(2).titleText().count('\n') == 0);
+    w.child<QAction>("field_visibility").trigger();
+    w.settle();
+    REQUIRE(fields.state() == FieldController::State::Current);
+    const QImage field = w.slice(2);
+    CHECK(differences(data, field) > 500);
+    // A pixel is the field between the voxels there, in the colours of its map from 0 to its top; away from the lines
+    // of the crosshair.
+    const SlicePlane plane = w.pane(2).plane();
+    const Volume& values = *fields.field()->volume;
+    const FieldView& view = *w.store().session().field;
+    const ColorMap& map = colorMapNamed(view.colorMap);
+    const double top = topOf(view, *fields.field());
+    int seen = 0;
+    for (const double x : {6.0, 8.0, 9.5, 15.0, 17.0})
+        for (const double y : {7.0, 8.5, 15.5, 17.0}) {
+            const QPoint pixel = w.pixelOf(2, {x, y, 12}).toPoint();
+            const Vec3 voxel = voxelAtPixel(values.geometry(), plane, {pixel.x() + 0.5, pixel.y() + 0.5});
+            const double value = valueAt(values, voxel).value();
+            const Rgb expected = map.colorAt(std::min(1.0, value / top));
+            const QColor c = field.pixelColor(pixel);
+            CHECK(std::abs(c.red() - 255 * expected.r) < 6); // the map is drawn as a line of points
+            CHECK(std::abs(c.green() - 255 * expected.g) < 6);
+            CHECK(std::abs(c.blue() - 255 * expected.b) < 6);
+            seen += value > 0.1 * top ? 1 : 0;
+        }
+    CHECK(seen > 3);
+    // What saliency has nothing to do with: grey of the data is out of reach, and says why.
+    CHECK_FALSE(w.child<QSlider>("sliceStrength").isEnabled());
+    CHECK(w.child<QLabel>("sliceFieldNote").isVisible());
+    const int steps = w.document().stepCount();
+    drag(w.pane(2), {60, 60}, {120, 40}, Qt::RightButton);
+    CHECK(w.document().stepCount() == steps);
+
+    // Under the mouse stands the field's value, beside that of the data.
+    SlicePane& z = w.pane(2);
+    moveTo(z, w.pixelOf(2, {8, 9, 12}));
+    REQUIRE(z.hovered());
+    REQUIRE(z.hovered()->field);
+    CHECK(*z.hovered()->field == values.value(8 + 24 * (9 + 24 * 12)));
+    CHECK(*z.hovered()->value == w.document().volume()->value(8 + 24 * (9 + 24 * 12)));
+    CHECK(z.hoverText().startsWith("Visibility " + QString::number(*z.hovered()->field, 'g', 4) + " (0 to 1)"));
+    CHECK(z.titleText().endsWith("\nVisibility"));
+
+    // Of an earlier view it says so until its own is there.
+    const std::shared_ptr<const Volume> before = fields.field()->volume;
+    drag(w.view(), w.view().rect().center(), w.view().rect().center() + QPoint(90, 10));
+    CHECK(z.titleText().endsWith("\nVisibility\nof an earlier state; the present one: being computed"));
+    w.settle();
+    CHECK(z.titleText().endsWith("\nVisibility"));
+    CHECK(fields.field()->volume != before);
+    moveTo(z, {1, 1});
+    CHECK(differences(field, w.slice(2), 0.25, 0.25, 0.75, 0.65) > 100);
+
+    // The data come back as they were.
+    w.child<QAction>("fieldAction").trigger();
+    CHECK(differences(data, w.slice(2), 0, 0.25, 1, 0.65) == 0);
+    CHECK(w.child<QSlider>("sliceStrength").isEnabled());
+    moveTo(z, w.pixelOf(2, {8, 9, 12}));
+    CHECK_FALSE(z.hovered()->field);
+}
+
+TEST_CASE("a large slice has the legend of its field", "[slices][fields]") {
+    SliceWindow w;
+    w.child<QAction>("field_vws").trigger();
+    w.window.views().maximize(&w.pane(2));
+    const QImage strong = w.slice(2);
+    // Another top is another scale at the right edge, and other colours.
+    w.store().edit("Top", {}, [](Session& s) { s.field.edit([](FieldView& f) { f.top = 1; }); });
+    CHECK(differences(strong, w.slice(2), 0.85, 0, 1, 0.4) > 50);
 }
 
 TEST_CASE("slices of a patient lie as radiologists are used to", "[slices]") {

@@ -336,6 +336,100 @@ TEST_CASE("with volatility from the first frame on its scale is found where ther
     CHECK(w.services().store().stepCount() == steps + 1);
 }
 
+TEST_CASE("features are of the volatility: figures, refinement, optimization and the player", "[variables]") {
+    const Weather weather;
+    OpenWindow w;
+    openCloud(w, weather);
+    const QImage before = w.picture();
+    const Session session = sessionOfWindow(w);
+    const auto data = w.services().scene().data;
+    const int steps = w.document().stepCount();
+    CHECK_FALSE(w.child<QSpinBox>("featureFrames").isVisible());
+    choose(w, "featuresOf", "volatility:cloud:10");
+    CHECK(w.document().stepCount() == steps + 1);
+    REQUIRE(sessionOfWindow(w).variable().derivation);
+    CHECK(sessionOfWindow(w).variable().derivation->text() == "volatility:cloud:10");
+    CHECK(w.child<QDockWidget>("featuresDock").windowTitle() == "Features of volatility of cloud");
+    CHECK(*sessionOfWindow(w).hsb == *session.hsb);
+
+    // Of four frames with values 0 to 1: the moving ball is at 8 + 2f, where (14,14,10) has 0, 0.2, 0.6 and 1 or so.
+    const std::shared_ptr<const Volume> deviation = w.document().volume();
+    const auto at = [](int x, int y, int z) { return static_cast<std::size_t>(x + kSide * (y + kSide * z)); };
+    double sum = 0, squares = 0, most = 0;
+    for (int f = 0; f < kFrames; ++f)
+        for (int x = 0; x < kSide; ++x) most = std::max(most, ball(Vec3(x, 14, 10), {8.0 + 2 * f, 14, 10}, 5));
+    REQUIRE(most == 1);
+    for (int f = 0; f < kFrames; ++f) {
+        const double value = ball({14, 14, 10}, {8.0 + 2 * f, 14, 10}, 5);
+        sum += value / kFrames;
+        squares += value * value / kFrames;
+    }
+    CHECK(deviation->value(at(14, 14, 10)) == Approx(std::sqrt(squares - sum * sum)).margin(1e-5));
+    CHECK(deviation->value(at(5, 5, 10)) == 0); // it rests
+    CHECK(deviation->range().lo == 0);          // of all frames: in the first there is none
+
+    // Features, and what is said of them, are of it.
+    w.settle();
+    REQUIRE(w.document().measures() != nullptr);
+    CHECK(w.document().measuresAreCurrent());
+    CHECK(w.document().measures()->features.size() == w.document().tf().features.size());
+    Workspace workspace;
+    const Measures own = workspace.measure(measureInput(w.services().scene()));
+    for (std::size_t f = 0; f < own.features.size(); ++f)
+        CHECK(w.document().measures()->features[f].vws == Approx(own.features[f].vws).margin(1e-9));
+    const TransferFunction automatic = w.document().tf();
+    w.document().setTf(tents(3, 0.3), "Tents");
+    w.settle();
+    w.refining().refine();
+    w.settle();
+    CHECK_FALSE(rangeless(w.document().tf()) == rangeless(tents(3, 0.3)));
+    undo(w);
+    w.child<QAction>("optimizeAction").trigger();
+    w.settle();
+    CHECK_FALSE(rangeless(w.document().tf()) == rangeless(tents(3, 0.3)));
+    undo(w);
+    undo(w);
+    CHECK(w.document().tf() == automatic);
+
+    // Frame by frame; over fewer frames; and back to the cloud, whose own curve comes back.
+    w.controllers().player.goTo(1);
+    w.settle();
+    CHECK(w.document().volume()->value(at(14, 14, 10)) < std::sqrt(squares - sum * sum));
+    CHECK(w.document().volume()->range() == deviation->range());
+    w.controllers().player.goTo(kFrames - 1);
+    w.settle();
+    auto& frames = w.child<QSpinBox>("featureFrames");
+    CHECK(frames.isVisible());
+    CHECK(frames.value() == 10);
+    frames.setValue(2);
+    w.settle();
+    CHECK(sessionOfWindow(w).variable().derivation->frames == 2);
+    const double last = ball({14, 14, 10}, {14, 14, 10}, 5), previous = ball({14, 14, 10}, {12, 14, 10}, 5);
+    CHECK(w.document().volume()->value(at(14, 14, 10)) == Approx((last - previous) / 2).margin(1e-5));
+
+    // A session keeps it.
+    const QString path = weather.folder.filePath("s.pellucid.json");
+    const Session kept = sessionOfWindow(w);
+    const std::vector<double> values = [&] {
+        std::vector<double> all;
+        for (std::size_t i = 0; i < w.document().volume()->size(); ++i) all.push_back(w.document().volume()->value(i));
+        return all;
+    }();
+    REQUIRE(w.saving().saveSession(path));
+    choose(w, "featuresOf", "cloud");
+    CHECK(sessionOfWindow(w).variable().track == session.variable().track);
+    CHECK(w.picture() == before);
+    CHECK(w.document().volume()->value(at(5, 5, 10)) == data->value(at(5, 5, 10)));
+    w.services().store().setClean();
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    w.opening().openPath(path);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.settle();
+    CHECK(*sessionOfWindow(w).variables == *kept.variables);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (w.document().volume()->value(i) != values[i]) FAIL("voxel " << i);
+}
+
 TEST_CASE("a second variable darkens; swapping it and back gives the same picture", "[variables]") {
     const Weather weather;
     OpenWindow w;

@@ -69,6 +69,57 @@ TEST_CASE("a derived variable becomes one of the session when it drives opacity"
     CHECK(s.hsb->saturation == "volatility:cloud:10");
 }
 
+TEST_CASE("features are of any variable, and channels stay with what they name", "[variables]") {
+    Session s = cloudAndRain();
+    const HsbMapping before = *s.hsb;
+    setFeaturesOf(s, featuresOf(s, "volatility:5"));
+    CHECK(namesOf(s) == Names{"volatility of cloud", "rain", "cloud"});
+    CHECK(s.variable().derivation->text() == "volatility:cloud:5");
+    CHECK(*s.hsb == before);
+    CHECK(featureFrames(s) == 5);
+    CHECK(dataVariable(s).name == "cloud");
+    setFeatureFrames(s, 3);
+    CHECK(s.variable().derivation->frames == 3);
+    VolumeSource other;
+    other.path = "other.nrrd";
+    setDataSource(s, other);
+    CHECK(s.variableNamed("cloud")->source == other);
+    CHECK(s.variable().source == VolumeSource{});
+    // The one that is there already, not another like it; and back.
+    setFeaturesOf(s, "rain");
+    CHECK(dataVariable(s).name == "rain");
+    CHECK_FALSE(featureFrames(s));
+    setFeaturesOf(s, "volatility:cloud:3");
+    CHECK(s.variables->size() == 3);
+    CHECK(s.variable().name == "volatility of cloud");
+    // Of what is derived itself, it is still the data in the end.
+    setFeaturesOf(s, "gradient:volatility of cloud");
+    CHECK(dataVariable(s).name == "cloud");
+    // A channel that is driven by the same is by its name from now on, so that it is made once.
+    Session t = cloudAndRain();
+    setFeaturesOf(t, "volatility:cloud:10");
+    CHECK(t.hsb->saturation == "volatility of cloud");
+    CHECK(t.hsb->hue == "cloud");
+}
+
+TEST_CASE("what features may be of is told in short and in full", "[variables]") {
+    Session s = cloudAndRain();
+    CHECK(featuresOf(s, "gradient") == "gradient:cloud");
+    CHECK(featuresOf(s, "volatility:10") == "volatility:cloud:10");
+    CHECK(featuresOf(s, "difference:0") == "difference:cloud:0");
+    CHECK(featuresOf(s, "volatility:rain:4") == "volatility:rain:4");
+    CHECK(featuresOf(s, "rain") == "rain");
+    addVariable(s, plain("gradient"));
+    CHECK(featuresOf(s, "gradient") == "gradient"); // somebody has called one so
+    const Session before = s;
+    CHECK_THROWS_AS(setFeaturesOf(s, "wind"), UsageError);
+    CHECK_THROWS_AS(setFeaturesOf(s, "gradient:wind"), UsageError);
+    CHECK_THROWS_AS(setFeaturesOf(s, "volatility:cloud:0"), UsageError);
+    CHECK(s == before);
+    setFeaturesOf(s, "gradient:cloud");
+    CHECK(dataVariable(s).name == "cloud");
+}
+
 TEST_CASE("any variable drives any channel", "[variables]") {
     Session s = cloudAndRain();
     setChannel(s, Channel::Saturation, "rain");
@@ -131,6 +182,7 @@ TEST_CASE("variables that are made of themselves are searched to an end", "[vari
     Session s;
     s.variables = std::vector<Variable>{derived("a", "gradient:b"), derived("b", "gradient:a")};
     CHECK(madeOf(s, "x").empty());
+    CHECK(dataVariable(s).name == "a");
 }
 
 TEST_CASE("a mapping begins with what there is", "[variables]") {

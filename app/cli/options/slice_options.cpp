@@ -33,12 +33,13 @@ void SliceOptions::add(CLI::App& app) {
         ->group(kGroup);
 }
 
+const char* SliceOptions::lookOfData() const {
+    return window ? "--window" : given.has("tf_strength") ? "--tf-strength" : nullptr;
+}
+
 void SliceOptions::check() const {
     if (at) return;
-    const char* alone = window                     ? "--window"
-                        : given.has("tf_strength") ? "--tf-strength"
-                        : nearest                  ? "--nearest"
-                                                   : nullptr;
+    const char* alone = lookOfData() != nullptr ? lookOfData() : nearest ? "--nearest" : nullptr;
     if (alone != nullptr) throw UsageError("this option needs --slice", alone, "add --slice, or leave it out");
 }
 
@@ -47,14 +48,15 @@ SlicePlane SliceOptions::planeOf(const Geometry& geometry, int width, int height
             width, height};
 }
 
-SliceSettings SliceOptions::settingsOf(const Scene& scene) const {
-    SliceViews views = *scene.session.slices;
-    given.applyTo(views);
-    SliceSettings settings;
-    settings.window = window ? *window : views.window.value_or(scene.volume->range());
-    settings.tfStrength = views.tfStrength;
-    settings.linear = !nearest;
-    return settings;
+SliceInput SliceOptions::inputOf(const Scene& scene, const Field* field) const {
+    Scene changed = scene;
+    changed.session.slices.edit([&](SliceViews& views) {
+        given.applyTo(views);
+        if (window) views.window = window;
+    });
+    SliceInput input = field != nullptr ? fieldSliceInput(changed, *field) : sliceInput(changed);
+    input.settings.linear = !nearest;
+    return input;
 }
 
 } // namespace pellucid::cli

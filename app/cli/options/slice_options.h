@@ -6,8 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "options/setting_options.h"
-#include "render/slice.h"
-#include "session/scene.h"
+#include "session/slice_input.h"
 
 namespace pellucid::cli {
 
@@ -25,8 +24,10 @@ struct SliceOptions {
     void check() const; ///< throws UsageError for options of slices without a slice
     /// The whole plane in a picture of this size; `at` is not empty.
     SlicePlane planeOf(const Geometry& geometry, int width, int height) const;
-    /// The session's, changed by the options; nothing is clipped.
-    SliceSettings settingsOf(const Scene& scene) const;
+    /// The option that says how the data look in a slice; null: none was given.
+    const char* lookOfData() const;
+    /// Of the data or, unless null, of the field; changed by the options.
+    SliceInput inputOf(const Scene& scene, const Field* field) const;
 };
 
 } // namespace pellucid::cli

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kGroup = "Variables";
 constexpr const char* kHsb = "--hsb";
+constexpr const char* kFeatures = "--features-of";
 constexpr const char* kHsbForm = "give alpha=, saturation=, brightness=, hue=, hue-from=, hue-to=, a=, b= with commas "
                                  "between; auto; or off";
 
@@ -52,21 +53,9 @@ Variable variableOf(const VariableOptions::Named& named, const VolumeSource& fir
     return variable;
 }
 
-/// A channel's driver has to be there before anything is read.
-void requireVariable(const Session& session, std::string name, const char* option = kHsb) {
-    while (session.variableNamed(name) == nullptr) {
-        const auto derivation = atOption(option, [&] { return parseDerivation(name); });
-        if (!derivation) {
-            const std::string known = joined(*session.variables, ", ", &Variable::name);
-            throw UsageError("there is no variable '" + name + "'", option, "the variables are " + known);
-        }
-        name = derivation->of;
-    }
-}
-
 void set(Session& session, const std::string& key, const std::string& value) {
     const auto channel = [&](Channel which) {
-        requireVariable(session, value);
+        atOption(kHsb, [&] { requireVariable(session, value); });
         setChannel(session, which, value);
     };
     HsbMapping hsb = *session.hsb;
@@ -113,16 +102,23 @@ void VariableOptions::add(CLI::App& app) {
         "of hue degrees too), hue-from=, hue-to= (degrees), a=, b= (scales of saturation and darkness, default auto) "
         "with commas between; auto: volatility of 10 frames and the second variable; off",
         kGroup);
+    addValue(
+        app, kFeatures, "VARIABLE", features, anyText,
+        "the variable whose intensities the transfer function and its features are of, and that drives opacity: a "
+        "name, "
+        "or gradient, volatility:FRAMES, difference:FRAME of VOLUME (gradient:NAME and so on of another one); figures, "
+        "targets and searches, --tf and --range are of it (default: VOLUME, or the session's)",
+        kGroup);
 }
 
 void VariableOptions::applyTo(SceneInputs& inputs) const {
     Session& session = inputs.session;
     for (const Named& named : variables) {
-        const Variable variable = variableOf(named, session.variable().source);
+        const Variable variable = variableOf(named, dataVariable(session).source);
         session.variables.edit([&](std::vector<Variable>& all) {
             const auto same =
                 std::find_if(all.begin(), all.end(), [&](const Variable& v) { return v.name == named.name; });
-            if (same == all.begin())
+            if (same != all.end() && same->name == dataVariable(session).name)
                 throw UsageError("the variable " + named.name + " is VOLUME's", "--variable", "give another name");
             if (same == all.end())
                 all.push_back(variable);
@@ -131,7 +127,14 @@ void VariableOptions::applyTo(SceneInputs& inputs) const {
         });
     }
     for (const Named& named : variables)
-        if (const auto derivation = parseDerivation(named.spec)) requireVariable(session, derivation->of, "--variable");
+        if (const auto derivation = parseDerivation(named.spec))
+            atOption("--variable", [&] { requireVariable(session, derivation->of); });
+    applyHsb(session);
+    if (features) // last: channels are told of VOLUME
+        atOption(kFeatures, [&] { setFeaturesOf(session, featuresOf(session, *features)); });
+}
+
+void VariableOptions::applyHsb(Session& session) const {
     if (!hsb) return;
     if (*hsb == "off") return session.hsb.edit([](HsbMapping& h) { h.on = false; });
     if (*hsb == "auto") {
@@ -141,16 +144,21 @@ void VariableOptions::applyTo(SceneInputs& inputs) const {
         for (const std::string& part : split(*hsb, ',')) {
             const std::size_t equals = part.find('=');
             if (equals == std::string::npos) throw UsageError("'" + part + "' sets nothing", kHsb, kHsbForm);
-            set(session, part.substr(0, equals), part.substr(equals + 1));
+            const std::string key = part.substr(0, equals);
+            refuse({{features && key == "alpha", "opacity is driven by the variable that the features are of",
+                     kFeatures, "leave out this option, or alpha= of --hsb"}});
+            set(session, key, part.substr(equals + 1));
         }
     }
     session.hsb.edit([](HsbMapping& h) { h.on = true; });
 }
 
 void addMapping(Json& result, const Scene& scene) {
+    const Variable& first = scene.session.variable();
+    if (first.derivation) result["features_of"] = first.derivation->text();
     if (!scene.colors) return;
     const HsbMapping& hsb = *scene.session.hsb;
-    Json& json = result["hsb"] = {{"alpha", scene.session.variable().name}};
+    Json& json = result["hsb"] = {{"alpha", first.name}};
     if (!hsb.saturation.empty()) {
         json["saturation"] = hsb.saturation;
         json["a"] = scene.hsbA;

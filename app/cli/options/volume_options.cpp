@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "parse.h"
+#include "session/variable_edits.h"
 
 namespace pellucid::cli {
 
@@ -143,7 +144,7 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     if (path)
         source.path = *path;
     else
-        source = session.variable().source;
+        source = dataVariable(session).source;
     if (raw) source.raw = raw;
     const bool isSample = source.isSample();
     refuse({{spacing && !source.raw, "--spacing is for headerless data", "--spacing", "give --raw as well"},
@@ -163,10 +164,8 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     if (downsample) source.downsample = *downsample;
     if (region) source.region = region;
 
-    session.variables.edit([&](std::vector<Variable>& all) {
-        if (all.empty()) all.emplace_back();
-        all.front().source = source;
-    });
+    if (session.isEmpty()) session.variables.edit([](std::vector<Variable>& all) { all.emplace_back(); });
+    setDataSource(session, source);
     inputs.range = range;
     inputs.frame = frame;
 }

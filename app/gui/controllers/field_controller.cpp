@@ -1,5 +1,7 @@
 #include "controllers/field_controller.h"
 
+#include <array>
+
 #include "dialogs/ask_file.h"
 #include "services/services.h"
 #include "store/edits.h"
@@ -104,6 +106,28 @@ PictureInput FieldController::picture(int width, int height, bool transparent) c
                    : pictureInput(scene, width, height, transparent);
 }
 
+QString FieldController::name() const {
+    if (m_state == State::Off) return {};
+    return field() ? QString::fromStdString(m_field->volume->title) : QString::fromLatin1(title(m_wanted.kind));
+}
+
+QString FieldController::stateText() const {
+    if (m_state == State::Off || m_state == State::Current) return {};
+    const QString why = m_state == State::Computing ? tr("being computed")
+                        : m_state == State::Failed  ? tr("cannot be computed")
+                                                    : tr("stopped");
+    return field() ? tr("of an earlier state; the present one: %1").arg(why) : why;
+}
+
+QString FieldController::valueText(double value) const {
+    /// By FieldKind; what values are measured in (docs/method.md, "Fields").
+    static const std::array kUnits{QT_TR_NOOP("(0 to 1)"), QT_TR_NOOP("(L*/100)"), QT_TR_NOOP("(C*/100)"),
+                                   QT_TR_NOOP("(u1·L*/100 + u2·C*/100)"), QT_TR_NOOP("(of 1 over all voxels)")};
+    return QStringLiteral("%1 %2 %3")
+        .arg(QString::fromLatin1(title(m_shown.kind)), QString::number(value, 'g', 4),
+             tr(kUnits.at(static_cast<std::size_t>(m_shown.kind))));
+}
+
 AnnotationInput FieldController::annotation(const PictureInput& picture, const AnnotationChoice& show,
                                             double density) const {
     const Scene& scene = m_services.scene();
@@ -113,16 +137,11 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const A
     if (!show.on) input.show = AnnotationChoice::none();
     input.show.on = input.show.title = true;
     input.show.legend = input.show.legend || field() != nullptr;
-    if (m_state == State::Current) {
-        if (dependsOnView(m_shown.kind) && !(picture.camera == scene.camera))
-            input.title += tr(" of another view").toStdString();
-        return input;
-    }
-    const QString why = m_state == State::Computing ? tr("being computed")
-                        : m_state == State::Failed  ? tr("cannot be computed")
-                                                    : tr("stopped");
-    input.title = field() ? input.title + " " + tr("of an earlier state; the present one: %1").arg(why).toStdString()
-                          : std::string(title(m_wanted.kind)) + ": " + why.toStdString();
+    input.title = name().toStdString();
+    if (m_state != State::Current)
+        input.title += (field() ? " " : ": ") + stateText().toStdString();
+    else if (dependsOnView(m_shown.kind) && !(picture.camera == scene.camera))
+        input.title += tr(" of another view").toStdString();
     return input;
 }
 

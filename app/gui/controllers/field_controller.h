@@ -35,6 +35,13 @@ public:
     /// What is drawn, of an older state unless current; null: the data are.
     const Field* field() const { return m_state == State::Off || !m_field ? nullptr : &*m_field; }
     const std::optional<Error>& failure() const { return m_failure; }
+    /// Of the field that is drawn or wanted: "Visibility, f2"; empty while the data are.
+    QString name() const;
+    /// That what is drawn is no field of the present state, and why: "of an earlier state; the present one: stopped";
+    /// empty where it is one, and while the data are drawn.
+    QString stateText() const;
+    /// A value of field(), with its kind and unit: "Visibility 0.42 (0 to 1)".
+    QString valueText(double value) const;
     double progress() const { return m_progress; } ///< of what is being computed, [0,1]
     bool isBusy() const { return m_state == State::Computing || m_saving.isRunning(); }
 

@@ -137,7 +137,7 @@ void OpenController::addActions() {
              }});
     file.add("wholeVolumeAction", tr("W&hole volume"), {}, tr("All the data, as fine as memory allows"),
              [this] { openWhole(); }, {.enabled = [this] {
-                 return m_services.isEditable() && m_services.scene().session.variable().source.region;
+                 return m_services.isEditable() && dataVariable(m_services.scene().session).source.region;
              }});
 }
 
@@ -215,7 +215,7 @@ void OpenController::show(const Request& request, Opened& opened) {
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
-    const VolumeSource source = opened.scene.session.variable().source;
+    const VolumeSource source = dataVariable(opened.scene.session).source;
     m_services.store().open(std::move(opened.scene));
     if (request.unsaved) m_services.store().setUnsaved();
     m_saving.setSessionPath(request.sessionPath);
@@ -250,9 +250,11 @@ void OpenController::openWhole() { openPart(tr("Whole volume"), {}); }
 
 void OpenController::openPart(const QString& text, const std::optional<VoxelRegion>& region) {
     editData(text, [region, window = m_services.scene().volume->range()](Session& session) {
+        VolumeSource source = dataVariable(session).source;
+        source.region = region;
+        source.downsample = 0;
+        setDataSource(session, source);
         editVariable(session, [&](Variable& v) {
-            v.source.region = region;
-            v.source.downsample = 0;
             if (region && !v.window && window.lo < window.hi) v.window = window; // not that of the region
         });
         session.clipping.edit([](Clipping& c) { c.lo = Vec3(0), c.hi = Vec3(1); });

@@ -1,5 +1,6 @@
 #include "panels/channels_box.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "controllers/open_controller.h"
@@ -34,15 +35,16 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
     setObjectName("channelsBox");
     auto* form = inset(new QFormLayout(this), {});
     form->setVerticalSpacing(6);
+    for (QSpinBox* box : {m_featureFrames, m_frames}) {
+        box->setRange(1, kMostFrames);
+        box->setKeyboardTracking(false);
+        box->setPrefix(tr("n = "));
+        box->setSuffix(tr(" frames"));
+    }
+    addFeatures(*form);
     form->addRow(m_on);
-    addChannel(*form, Channel::Opacity, "hsbOpacity", tr("Opacity ←"),
-               tr("Alpha = transfer function of X: the variable whose features, curve and histogram are shown"));
     addChannel(*form, Channel::Saturation, "hsbSaturation", tr("Saturation ←"),
                tr("Saturation = clip(a · std): what changes over time is colourful, what rests is grey"));
-    m_frames->setRange(1, kMostFrames);
-    m_frames->setKeyboardTracking(false);
-    m_frames->setPrefix(tr("n = "));
-    m_frames->setSuffix(tr(" frames"));
     form->addRow(QString(), m_frames);
     auto* scales = new SettingRows(m_services, *form, settingPart<HsbMapping>(&Session::hsb));
     scales->setCommit([this](const QString& text, const QString& key, const auto& change) { edit(text, key, change); });
@@ -84,6 +86,18 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
         m_services, this, [this] { follow(); }, &Session::variables, &Session::hsb);
 }
 
+void ChannelsBox::addFeatures(QFormLayout& form) {
+    addChannel(form, Channel::Opacity, "featuresOf", tr("Features of"),
+               tr("The variable whose curve, histogram and features are shown, and that drives opacity: alpha =\n"
+                  "transfer function of X. Figures, targets, refinement and optimization are of it. Each variable\n"
+                  "keeps a transfer function of its own."));
+    form.addRow(QString(), m_featureFrames);
+    connect(m_featureFrames, &QSpinBox::valueChanged, this, [this](int frames) {
+        m_opening.editInJob(tr("Frames of the features' volatility"),
+                            [frames](Session& session) { setFeatureFrames(session, frames); });
+    });
+}
+
 void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* name, const QString& label,
                              const QString& tip) {
     auto* combo = named(new QComboBox(this), name, tip);
@@ -94,6 +108,9 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
         const std::string driver = combo->currentData().toString().toStdString();
         if (driver == channelOf(m_services.store().session(), channel)) return;
+        if (channel == Channel::Opacity)
+            return m_opening.editInJob(tr("Features of %1").arg(combo->currentText()),
+                                       [driver](Session& s) { setFeaturesOf(s, driver); });
         m_opening.editInJob(tr("%1 from %2").arg(tr(kTitles[indexOf(channel)]), combo->currentText()),
                             [channel, driver](Session& s) { setChannel(s, channel, driver); });
     });
@@ -165,7 +182,7 @@ void ChannelsBox::followChannel(Channel channel) {
     combo.clear();
     const auto add = [&](const std::string& name) {
         if (const QString key = QString::fromStdString(name); combo.findData(key) < 0)
-            combo.addItem(driverText(session, name), key);
+            combo.addItem(channel == Channel::Opacity ? featuresText(session, name) : driverText(session, name), key);
     };
     if (channel != Channel::Opacity)
         combo.addItem(channel == Channel::Hue ? tr("the same everywhere") : tr("full everywhere"), QString());
@@ -175,13 +192,19 @@ void ChannelsBox::followChannel(Channel channel) {
         if (v.derivation) continue;
         Derivation derivation;
         derivation.of = v.name;
+        const auto isThere = [&] { // as a variable: it is in the list already
+            return channel == Channel::Opacity &&
+                   std::any_of(session.variables->begin(), session.variables->end(), [&](const Variable& w) {
+                       return w.derivation && w.derivation->kind == derivation.kind && w.derivation->of == v.name;
+                   });
+        };
         if (scene.series && scene.series->varies()) {
             derivation.kind = Derivation::Kind::Volatility;
             derivation.frames = volatilityFrames(session).value_or(derivation.frames);
-            add(derivation.text());
+            if (!isThere()) add(derivation.text());
         }
         derivation.kind = Derivation::Kind::Gradient;
-        add(derivation.text());
+        if (!isThere()) add(derivation.text());
     }
     const std::string present = channelOf(session, channel);
     if (!present.empty()) add(present);
@@ -197,8 +220,11 @@ void ChannelsBox::follow() {
     for (const Channel channel : kChannels) followChannel(channel);
     const auto frames = volatilityFrames(scene.session);
     m_frames->setEnabled(hsb.on && frames.has_value());
-    const QSignalBlocker still(m_frames), quiet(m_hueSlider);
+    const auto featuresOver = featureFrames(scene.session);
+    m_featureFrames->setVisible(featuresOver.has_value());
+    const QSignalBlocker still(m_frames), quiet(m_hueSlider), calm(m_featureFrames);
     if (frames) m_frames->setValue(*frames);
+    if (featuresOver) m_featureFrames->setValue(*featuresOver);
     const bool constant = hsb.hue.empty();
     const double turned = hsb.hueFrom - 360 * std::floor(hsb.hueFrom / 360);
     if (!m_hueSlider->isSliderDown()) m_hueSlider->setValue(static_cast<int>(std::lround(turned)) % 360);
@@ -213,9 +239,10 @@ void ChannelsBox::follow() {
         m_channels[indexOf(channel)]->setEnabled(hsb.on);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_hueSlider, m_hueFrom, m_hueTo}) widget->setEnabled(hsb.on);
     m_swap->setEnabled(!hsb.brightness.empty() && hsb.brightness != scene.session.variable().name);
-    m_note->setText(frames && scene.series && !scene.series->varies()
-                        ? tr("There is one frame: its volatility is 0, and all is grey.")
-                        : QString());
+    const bool oneFrame = scene.series && !scene.series->varies();
+    m_note->setText(featuresOver && oneFrame ? tr("There is one frame: its volatility is 0, and there are no features.")
+                    : frames && oneFrame     ? tr("There is one frame: its volatility is 0, and all is grey.")
+                                             : QString());
     m_note->setVisible(!m_note->text().isEmpty());
 }
 

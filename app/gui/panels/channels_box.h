@@ -1,4 +1,4 @@
-// Which variable drives opacity, saturation, brightness and hue (thesis eq. 6.1).
+// Whose features are looked at, and which variables drive saturation, brightness and hue (thesis eq. 6.1).
 #pragma once
 
 #include <array>
@@ -28,6 +28,7 @@ public:
 
 private:
     void addChannel(QFormLayout& form, Channel channel, const char* name, const QString& label, const QString& tip);
+    void addFeatures(QFormLayout& form);
     void addHue(QFormLayout& form);
     void follow();
     void followChannel(Channel channel);
@@ -45,6 +46,9 @@ private:
         tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer function. "
            "Figures are measured with these colours."));
     std::array<QComboBox*, 4> m_channels{}; ///< by Channel
+    QSpinBox* m_featureFrames =
+        named(new QSpinBox(this), "featureFrames",
+              tr("The features are of the standard deviation of each voxel over the latest n frames"));
     QSpinBox* m_frames = named(new QSpinBox(this), "hsbFrames",
                                tr("Volatility is the standard deviation of a voxel over the latest n frames"));
     QPushButton* m_swap =

@@ -9,6 +9,7 @@
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
+#include "session/variable_edits.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
 #include "widgets/number_box.h"
@@ -94,7 +95,11 @@ DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget*
     connect(m_wholeRange, &QPushButton::clicked, this,
             [this] { editVariable(tr("All values"), [](Variable& v) { v.window.reset(); }); });
     connect(m_component, &QSpinBox::valueChanged, this, [this](int component) {
-        editVariable(tr("Component"), [component](Variable& v) { v.source.component = component; });
+        m_opening.editData(tr("Component"), [component](Session& session) {
+            VolumeSource source = dataVariable(session).source;
+            source.component = component;
+            setDataSource(session, source);
+        });
     });
     connect(&m_opening, &OpenController::busyChanged, this, [this] {
         if (!m_opening.isBusy()) follow(); // also where it failed; till then it shows what was asked for
@@ -163,7 +168,7 @@ void DisplayPanel::follow() {
     m_wholeRange->setEnabled(window != all);
     m_note->setText(tr("The data has values from %1 to %2.")
                         .arg(numberText(all.lo, all.hi - all.lo), numberText(all.hi, all.hi - all.lo)));
-    const VolumeSource& source = scene.session.variable().source;
+    const VolumeSource& source = dataVariable(scene.session).source;
     if (m_component->value() != source.component) m_component->setValue(source.component);
     m_component->setEnabled(ready && !source.isSample() && !source.raw);
 }

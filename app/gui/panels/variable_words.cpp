@@ -37,6 +37,15 @@ QString driverText(const Session& session, const std::string& name) {
     return QString::fromStdString(name);
 }
 
+QString featuresText(const Session& session, const std::string& name) {
+    const Variable* const variable = session.variableNamed(name);
+    if (variable == nullptr || !variable->derivation) return driverText(session, name);
+    const QString made = derivationText(*variable->derivation, driverText(session, variable->derivation->of));
+    return made.startsWith(QString::fromStdString(name))
+               ? made
+               : QStringLiteral("%1 (%2)").arg(driverText(session, name), made);
+}
+
 QString curveTitle(const Session& session) {
     const QString title = QObject::tr("Transfer function");
     const HsbMapping& hsb = *session.hsb;

@@ -16,6 +16,9 @@ QString originText(const Variable& variable);
 /// What a channel may name, in words: "x", "gradient of x".
 QString driverText(const Session& session, const std::string& name);
 
+/// What features may be of, in words: "x", "volatility of x, 10 frames", "motion (volatility of x, 10 frames)".
+QString featuresText(const Session& session, const std::string& name);
+
 /// In words, whose opacity the curve says and where colours come from: title of the editor of transfer functions.
 QString curveTitle(const Session& session);
 /// In words, whose features those of the list are.

@@ -25,8 +25,10 @@ SliceBar::SliceBar(Services& services, QWidget* parent)
       m_hi(named(new QDoubleSpinBox(this), "greyHi",
                  tr("Value that is white in the slices, in the units of the data; right drag in a slice"))),
       m_reset(named(toolButton(tr("Reset"), this), "greyReset",
-                    tr("Black and white at the ends of the range of values; right double-click in a slice"))) {
+                    tr("Black and white at the ends of the range of values; right double-click in a slice"))),
+      m_ofField(new QLabel(tr("A field is shown: its colours and range are in the panel Fields"), this)) {
     setObjectName("sliceBar");
+    m_ofField->setObjectName("sliceFieldNote");
     setAutoFillBackground(true);
     m_strength->setRange(0, 100);
     m_strength->setPageStep(10);
@@ -42,13 +44,17 @@ SliceBar::SliceBar(Services& services, QWidget* parent)
     auto* grey = new QLabel(tr("Gre&y"), this);
     grey->setBuddy(m_lo);
     auto* to = new QLabel(QString(QChar(0x2013)), this);
-    setLayout(inset(rowOf({colors, m_strength, Cell::gap(10), grey, m_lo, to, m_hi, m_reset, Cell::rest()}, 6),
+    setLayout(inset(rowOf({colors, m_strength, Cell::gap(10), grey, m_lo, to, m_hi, m_reset, Cell::gap(10), m_ofField,
+                           Cell::rest()},
+                          6),
                     {8, 3, 8, 3}));
     connect(m_strength, &QSlider::valueChanged, this, &SliceBar::editStrength);
     connect(m_strength, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
     connect(m_reset, &QToolButton::clicked, this, [this] { resetGreyWindow(m_services.store()); });
     connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.volume != after.volume || !before.session.slices.isSame(after.session.slices)) follow();
+        if (before.volume != after.volume || !before.session.slices.isSame(after.session.slices) ||
+            !before.session.field.isSame(after.session.field))
+            follow();
     });
     connect(&services, &Services::readOnlyChanged, this, &SliceBar::follow);
     follow();
@@ -74,7 +80,10 @@ void SliceBar::editWindow(const QDoubleSpinBox& box) {
 void SliceBar::follow() {
     if (!m_services.store().hasVolume()) return;
     const Scene& scene = m_services.scene();
-    setEnabled(!m_services.isReadOnly());
+    const bool field = scene.session.field->kind.has_value();
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_strength, m_lo, m_hi})
+        widget->setEnabled(!m_services.isReadOnly() && !field);
+    m_ofField->setVisible(field);
     const QSignalBlocker quiet(m_strength), low(m_lo), high(m_hi);
     if (!m_strength->isSliderDown())
         m_strength->setValue(static_cast<int>(std::lround(100 * scene.session.slices->tfStrength)));
@@ -86,7 +95,7 @@ void SliceBar::follow() {
     }
     showNumber(*m_lo, window.lo);
     showNumber(*m_hi, window.hi);
-    m_reset->setEnabled(scene.session.slices->window.has_value());
+    m_reset->setEnabled(!m_services.isReadOnly() && !field && scene.session.slices->window.has_value());
 }
 
 } // namespace pellucid::gui

@@ -4,6 +4,7 @@
 #include <QWidget>
 
 class QDoubleSpinBox;
+class QLabel;
 class QSlider;
 class QToolButton;
 
@@ -11,7 +12,7 @@ namespace pellucid::gui {
 
 class Services;
 
-/// How strong the transfer function's colours are, and the window of grey in data units.
+/// How strong the transfer function's colours are, and the window of grey in data units; of the data, not of a field.
 class SliceBar : public QWidget {
     Q_OBJECT
 public:
@@ -26,6 +27,7 @@ private:
     QSlider* m_strength;
     QDoubleSpinBox *m_lo, *m_hi;
     QToolButton* m_reset;
+    QLabel* m_ofField; ///< why the rest is greyed out
 };
 
 } // namespace pellucid::gui

@@ -15,13 +15,14 @@
 #include <glm/vector_relational.hpp>
 
 #include "base/stopwatch.h"
+#include "controllers/field_controller.h"
 #include "services/services.h"
 #include "store/edits.h"
 #include "store/view_edits.h"
-#include "tf/shown_tf.h"
 #include "view/view_surface.h"
 #include "volume/orientation.h"
 #include "widgets/image_convert.h"
+#include "widgets/mark_painter.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -64,8 +65,9 @@ QColor slicePlaneColor(int worldAxis) {
     return kColors.at(static_cast<std::size_t>(worldAxis));
 }
 
-SlicePane::SlicePane(Services& services, int worldAxis, Lane& lane, QWidget* parent)
-    : QWidget(parent), m_services(services), m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
+SlicePane::SlicePane(Services& services, const FieldController& fields, int worldAxis, Lane& lane, QWidget* parent)
+    : QWidget(parent), m_services(services), m_fields(fields), m_worldAxis(worldAxis),
+      m_maximize(new QToolButton(this)),
       m_job([](const Request& request, const JobControl&) { return drawn(request); },
             [this](const Request& request, Drawn& result) { show(request, result); }, WhenBusy::FinishOld, &lane) {
     const QLatin1Char axisLetter("XYZ"[worldAxis]);
@@ -83,6 +85,12 @@ SlicePane::SlicePane(Services& services, int worldAxis, Lane& lane, QWidget* par
     setMaximized(false);
     connect(m_maximize, &QToolButton::clicked, this, &SlicePane::maximizeWanted);
     connect(&services.store(), &SessionStore::changed, this, &SlicePane::follow);
+    connect(&fields, &FieldController::changed, this, [this] {
+        request();
+        if (isHidden()) return;
+        hover(m_mouse);
+        update();
+    });
 }
 
 void SlicePane::setMaximized(bool on) {
@@ -144,12 +152,9 @@ void SlicePane::request() {
     if (isHidden() || !m_services.store().hasVolume() || width() <= 0 || height() <= 0) return;
     const Scene& scene = m_services.scene();
     const QSize pixels = devicePixels(*this);
-    Request next{
-        .volume = scene.volume, .tf = shownTf(scene.tf), .plane = planeOfSize(pixels.width(), pixels.height())};
-    next.settings.window = greyWindowOf(scene);
-    next.settings.tfStrength = scene.session.slices->tfStrength;
-    next.settings.clipping = *scene.session.clipping;
-    next.settings.colors = scene.colors;
+    const Field* const field = m_fields.field();
+    Request next{.input = field != nullptr ? fieldSliceInput(scene, *field) : sliceInput(scene),
+                 .plane = planeOfSize(pixels.width(), pixels.height())};
     if (next == m_wanted) return;
     m_wanted = next;
     m_complete = false;
@@ -165,12 +170,13 @@ SlicePane::Drawn SlicePane::drawn(const Request& request) {
         plane.width = (plane.width + 1) / 2;
         plane.height = (plane.height + 1) / 2;
     }
-    SliceSettings settings = request.settings;
+    const SliceInput& input = request.input;
+    SliceSettings settings = input.settings;
     settings.clipping = {};
-    Image image = renderSlice(*request.volume, request.tf, plane, settings);
-    if (!request.settings.clipping.isNone()) {
+    Image image = renderSlice(*input.volume, input.tf, plane, settings);
+    if (!input.settings.clipping.isNone()) {
         // What is clipped away stays, dimmed: one sees what the volume leaves out.
-        const Image left = renderSlice(*request.volume, request.tf, plane, request.settings);
+        const Image left = renderSlice(*input.volume, input.tf, plane, input.settings);
         for (std::size_t i = 0; i < image.rgba.size(); i += 4)
             if (left.rgba[i + 3] == 0)
                 for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] *= kDimmed;
@@ -179,7 +185,7 @@ SlicePane::Drawn SlicePane::drawn(const Request& request) {
 }
 
 void SlicePane::show(const Request& request, const Drawn& result) {
-    if (request.volume != m_wanted.volume) return; // of what is no longer open
+    if (request.input.volume != m_wanted.input.volume) return; // of what is no longer shown
     m_image = result.image;
     m_slow = result.seconds * (request.coarse ? 4 : 1) > kSlowSeconds;
     Request full = request;
@@ -257,7 +263,9 @@ void SlicePane::hover(const std::optional<QPointF>& point) {
         const Vec3 voxel = voxelAtPixel(volume.geometry(), plane(), {point->x(), point->y()});
         const Vec3 lo = volume.geometry().voxelBoxMin(), hi = volume.geometry().voxelBoxMax();
         if (glm::all(glm::greaterThanEqual(voxel, lo)) && glm::all(glm::lessThanEqual(voxel, hi)))
-            m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false)};
+            m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false), {}};
+        if (const Field* field = m_fields.field(); field != nullptr && m_hovered)
+            m_hovered->field = valueAt(*field->volume, voxel, false);
     }
     std::optional<double> intensity;
     if (m_hovered && m_hovered->value) intensity = m_services.scene().volume->intensityOfValue(*m_hovered->value);
@@ -277,6 +285,7 @@ QString SlicePane::hoverText() const {
         if (feature >= 0)
             text += "  " + QString::fromStdString(scene.tf.features[static_cast<std::size_t>(feature)].name);
     }
+    if (m_hovered->field) text = m_fields.valueText(*m_hovered->field) + "\n" + text;
     const double size = 2 * geometry.radius();
     const Vec3& w = m_hovered->world;
     return text + QStringLiteral("\n%1, %2, %3 %4")
@@ -302,7 +311,7 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
         m_motion = Motion::Pan;
         break;
     case Qt::RightButton:
-        if (m_services.isReadOnly()) return;
+        if (m_services.isReadOnly() || m_fields.field() != nullptr) return; // a field has no grey
         m_services.store().commit();
         m_motion = Motion::Window;
         m_windowBefore = greyWindowOf(m_services.scene());
@@ -338,7 +347,8 @@ void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
 
 void SlicePane::mouseDoubleClickEvent(QMouseEvent* event) {
     if (!m_services.store().hasVolume()) return;
-    if (event->button() == Qt::RightButton && !m_services.isReadOnly()) return resetGreyWindow(m_services.store());
+    if (event->button() == Qt::RightButton && !m_services.isReadOnly() && m_fields.field() == nullptr)
+        return resetGreyWindow(m_services.store());
     if (event->button() != Qt::LeftButton) return;
     if (onTitle(event->position())) return Q_EMIT maximizeWanted();
     if (m_crosshairBefore) m_services.store().setCrosshair(*m_crosshairBefore); // the first click was half of this
@@ -418,11 +428,39 @@ QString SlicePane::titleText() const {
     const double at = geometry.worldFromVoxel(voxel)[m_worldAxis];
     QString name = QString::fromLatin1(sliceName(geometry, a));
     if (geometry.worldAxes == WorldAxes::Patient) name[0] = name[0].toUpper(); // a word, not an axis
-    return tr("%1  %2 of %3   %4 %5")
-        .arg(name)
-        .arg(static_cast<int>(std::lround(voxel[a])) + 1)
-        .arg(geometry.dims[a])
-        .arg(numberText(at, 2 * geometry.radius()), QLatin1String(unitOf(geometry)));
+    QString text = tr("%1  %2 of %3   %4 %5")
+                       .arg(name)
+                       .arg(static_cast<int>(std::lround(voxel[a])) + 1)
+                       .arg(geometry.dims[a])
+                       .arg(numberText(at, 2 * geometry.radius()), QLatin1String(unitOf(geometry)));
+    for (const QString& line : {m_fields.name(), m_fields.stateText()})
+        if (!line.isEmpty()) text += "\n" + line;
+    return text;
+}
+
+void SlicePane::paintTitle(QPainter& painter) const {
+    const QFontMetricsF metrics(painter.font());
+    QColor color = slicePlaneColor(m_worldAxis);
+    painter.fillRect(QRectF(0, 0, width(), 2), color);
+    double y = 5 + metrics.ascent(), room = width() - 2 * kMargin - m_maximize->width();
+    for (const QString& line : titleText().split('\n')) {
+        haloText(painter, {kMargin, y}, metrics.elidedText(line, Qt::ElideRight, room), color);
+        y += metrics.lineSpacing();
+        color = theme::kMark;
+    }
+}
+
+/// Colours and values of the field, as in the picture; where the slice is large enough.
+void SlicePane::paintLegend(QPainter& painter) const {
+    const int room = static_cast<int>(height() / 2 - 1.5 * kTitle); // between the button and the letter below it
+    if (m_fields.field() == nullptr || width() < 240 || room < 90) return;
+    AnnotationInput input = m_fields.annotation(m_fields.picture(width(), room), *m_services.scene().session.reference);
+    input.show = AnnotationChoice::none();
+    input.show.legend = true;
+    painter.save();
+    painter.translate(0, kTitle); // below the button
+    for (const Mark& mark : annotationMarks(input)) drawMark(painter, mark);
+    painter.restore();
 }
 
 void SlicePane::paintEvent(QPaintEvent*) {
@@ -441,10 +479,8 @@ void SlicePane::paintEvent(QPaintEvent*) {
     const QFontMetricsF metrics(small);
     paintLetters(painter);
     paintScale(painter, shown);
-    const QColor color = slicePlaneColor(m_worldAxis);
-    painter.fillRect(QRectF(0, 0, width(), 2), color);
-    haloText(painter, {kMargin, 5 + metrics.ascent()},
-             metrics.elidedText(titleText(), Qt::ElideRight, width() - 2 * kMargin - m_maximize->width()), color);
+    paintLegend(painter);
+    paintTitle(painter);
     QString text = hoverText();
     if (m_motion == Motion::Window && m_moved) {
         const ValueRange window = greyWindowOf(m_services.scene());
@@ -501,8 +537,9 @@ QStringList SlicePane::edgeLetters() const {
 void SlicePane::paintLetters(QPainter& painter) const {
     const QFontMetricsF metrics(painter.font());
     const double cap = metrics.capHeight(), midX = width() / 2.0, midY = height() / 2.0;
+    const double top = kTitle + titleText().count('\n') * metrics.lineSpacing(); // below what is said of a field
     const QPointF middles[] = {
-        {static_cast<double>(width()), midY}, {0, midY}, {midX, kTitle + cap}, {midX, height() - kMargin - cap / 2}};
+        {static_cast<double>(width()), midY}, {0, midY}, {midX, top + cap}, {midX, height() - kMargin - cap / 2}};
     const QStringList letters = edgeLetters();
     for (int i = 0; i < 4; ++i) {
         const double w = metrics.horizontalAdvance(letters[i]);

@@ -7,27 +7,29 @@
 #include <QWidget>
 
 #include "jobs/job.h"
-#include "render/slice.h"
+#include "session/slice_input.h"
 #include "store/session_store.h"
 
 class QToolButton;
 
 namespace pellucid::gui {
 
+class FieldController;
 class Services;
 
 /// Of the crosshair's lines, the titles and the planes in the volume: one for each world axis that a slice is
 /// perpendicular to. Colour-blind eyes can tell them apart.
 QColor slicePlaneColor(int worldAxis);
 
-/// The slice of the store's volume that is perpendicular to one world axis (nearly, where the volume lies obliquely),
-/// through the crosshair. Zoom and pan are its own and no part of the session. Drawn off the window's thread; coarse
-/// while it changes where that takes long.
+/// The slice of the store's volume, or of the field in its place, that is perpendicular to one world axis (nearly,
+/// where the volume lies obliquely), through the crosshair. Zoom and pan are its own and no part of the session. Drawn
+/// off the window's thread; coarse while it changes where that takes long.
 class SlicePane : public QWidget {
     Q_OBJECT
 public:
-    /// `lane` draws the slices of all panes, one after the other; it outlives this.
-    SlicePane(Services& services, int worldAxis, Lane& lane, QWidget* parent = nullptr);
+    /// `fields` says what is drawn in the place of the data. `lane` draws the slices of all panes, one after the other;
+    /// both outlive this.
+    SlicePane(Services& services, const FieldController& fields, int worldAxis, Lane& lane, QWidget* parent = nullptr);
 
     int worldAxis() const { return m_worldAxis; }
     int axis() const; ///< the index axis; there is a volume
@@ -40,9 +42,11 @@ public:
     struct Hovered {
         Vec3 voxel{0}, world{0};     ///< voxel coordinates, and the same in the world
         std::optional<double> value; ///< of the nearest voxel, data units; empty where it is invalid
+        std::optional<double> field; ///< of the nearest voxel, where a field is drawn
     };
     const std::optional<Hovered>& hovered() const { return m_hovered; }
-    QString hoverText() const; ///< value, feature, place; empty where nothing is
+    QString hoverText() const; ///< value of the field, value, feature, place; empty where nothing is
+    QString titleText() const; ///< a line for the plane; where a field is wanted, one for it and one for its state
 
     /// Where the right, left, upper and lower edge lie: in the patient (L R A P S I), else along the file's axes.
     QStringList edgeLetters() const;
@@ -71,10 +75,8 @@ protected:
 private:
     enum class Motion { None, Crosshair, Pan, Window };
     struct Request {
-        std::shared_ptr<const Volume> volume;
-        TransferFunction tf;
-        SlicePlane plane; ///< in device pixels
-        SliceSettings settings = {};
+        SliceInput input;
+        SlicePlane plane;    ///< in device pixels
         bool coarse = false; ///< at half the resolution
         bool operator==(const Request&) const = default;
     };
@@ -96,12 +98,14 @@ private:
     void hover(const std::optional<QPointF>& point);
     void cancelDrag();
     bool onTitle(const QPointF& point) const;
-    QString titleText() const;
+    void paintTitle(QPainter& painter) const;
+    void paintLegend(QPainter& painter) const;
     void paintCrosshair(QPainter& painter, const SlicePlane& plane) const;
     void paintLetters(QPainter& painter) const;
     void paintScale(QPainter& painter, const SlicePlane& plane) const;
 
     Services& m_services;
+    const FieldController& m_fields;
     const int m_worldAxis;
     QToolButton* m_maximize;
     double m_zoom = 1;            ///< 1: the whole plane

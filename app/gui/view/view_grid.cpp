@@ -19,13 +19,13 @@ constexpr double kLeast = 0.12; // of the area, for each row and column
 
 } // namespace
 
-ViewGrid::ViewGrid(Services& services, VolumeView& volume, QWidget* parent)
+ViewGrid::ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, QWidget* parent)
     : QWidget(parent), m_services(services), m_volume(volume), m_bar(new SliceBar(services, this)) {
     setObjectName("viewGrid");
     setMouseTracking(true);
     volume.setParent(this);
     for (int a = 0; a < 3; ++a) {
-        auto* pane = new SlicePane(services, a, m_lane, this);
+        auto* pane = new SlicePane(services, fields, a, m_lane, this);
         m_panes[static_cast<std::size_t>(a)] = pane;
         pane->hide();
         connect(pane, &SlicePane::pictureShown, this, &ViewGrid::slicesShown);

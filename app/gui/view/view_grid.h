@@ -21,7 +21,8 @@ class ViewGrid : public QWidget {
     Q_OBJECT
     Lane m_lane; // draws slices; outlives the panes, which are children
 public:
-    ViewGrid(Services& services, VolumeView& volume, QWidget* parent = nullptr);
+    /// `fields`, which outlives this, says what slices show in the place of the data.
+    ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, QWidget* parent = nullptr);
     ~ViewGrid() override;
 
     VolumeView& volume() { return m_volume; }

@@ -67,7 +67,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_services(std::make_unique<Services>(this)),
       m_controllers(std::make_unique<Controllers>(*m_services)),
       m_view(new VolumeView(m_services->store(), renderer, this, &m_controllers->fields)),
-      m_views(new ViewGrid(*m_services, *m_view, this)), m_row(new QHBoxLayout) {
+      m_views(new ViewGrid(*m_services, m_controllers->fields, *m_view, this)), m_row(new QHBoxLayout) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);
