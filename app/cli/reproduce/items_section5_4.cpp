@@ -119,6 +119,8 @@ void overTime(Desk& desk) {
                    rangeOf(following, 0) < rangeOf(still, 0),
                    "its VWS goes up and down by " + figureText(rangeOf(still, 0)) + " static, by " +
                        figureText(rangeOf(following, 0)) + " dynamic");
+    if (crossingsOf(stillFs) + crossingsOf(followingFs) == 0)
+        desk.remark("Here no 2DFS curves cross: in every frame the features keep their order.");
     desk.remark(
         "Every fifth time step. In the thesis's sentence on crossings both sides name figure 5.12 (b); it is read "
         "as the static curves crossing more often than the dynamic ones.");

@@ -1,5 +1,7 @@
 #include "runner/study_pages.h"
 
+#include <cmath>
+
 #include <QPainter>
 #include <QScrollArea>
 
@@ -11,6 +13,7 @@
 namespace pellucid::gui {
 namespace {
 
+constexpr int kStackWidth = 420;                                    // of buttons below each other
 constexpr int kTextWidth = 760;                                     // logical pixels, of lines that are read with ease
 constexpr double kTitleSize = 2, kTaskSize = 2.4, kTextSize = 1.35; // of the usual letters
 
@@ -60,35 +63,49 @@ QPalette studyPalette(const QColor& background) {
 
 TextPage::TextPage(const QString& id, const QString& title, QWidget* parent)
     : QWidget(parent), m_title(named(centredLabel(kTitleSize, this), "studyTitle")),
-      m_text(named(centredLabel(kTextSize, this), "studyText")), m_buttons(rowOf({Cell::rest()}, 16)) {
+      m_text(named(centredLabel(kTextSize, this), "studyText")), m_area(new QScrollArea(this)),
+      m_buttons(rowOf({Cell::rest(), Cell::rest()}, 24)) {
     setObjectName(id);
     m_title->setText(title);
     m_text->setMaximumWidth(kTextWidth);
     m_text->setAlignment(Qt::AlignLeft | Qt::AlignTop);
     auto* inner = new QWidget(this);
-    inner->setLayout(rowOf({Cell::rest(), {m_text, 1000}, Cell::rest()}));
-    auto* area = new QScrollArea(this);
-    area->setWidget(inner);
-    area->setWidgetResizable(true);
-    area->setFrameShape(QFrame::NoFrame);
-    setLayout(inset(columnOf({Cell::rest(), m_title, Cell::gap(20), {area, 4}, Cell::gap(20), m_buttons, Cell::rest()}),
-                    {40, 40, 40, 40}));
+    inner->setLayout(inset(rowOf({Cell::rest(), {m_text, 1000}, Cell::rest()}), {}));
+    m_area->setWidget(inner);
+    m_area->setWidgetResizable(true);
+    m_area->setFrameShape(QFrame::NoFrame);
+    setLayout(
+        inset(columnOf({Cell::rest(), m_title, Cell::gap(24), {m_area, 100}, Cell::gap(32), m_buttons, Cell::rest()}),
+              {40, 40, 40, 40}));
 }
 
 QPushButton* TextPage::addButton(const QString& id, const QString& text, const std::function<void()>& press) {
     auto* button = largeButton(id, text, this);
     if (m_first == nullptr) m_first = button;
-    m_buttons->insertWidget(m_buttons->count(), button);
-    m_buttons->addStretch(1);
+    m_buttons->insertWidget(m_buttons->count() - 1, button, 0, Qt::AlignHCenter);
     connect(button, &QPushButton::clicked, this, press);
     return button;
 }
 
-void TextPage::stackButtons() { m_buttons->setDirection(QBoxLayout::TopToBottom); }
+void TextPage::stackButtons() {
+    m_buttons->setDirection(QBoxLayout::TopToBottom);
+    for (QPushButton* button : findChildren<QPushButton*>()) button->setMinimumWidth(kStackWidth);
+}
 
 void TextPage::showEvent(QShowEvent* event) {
     QWidget::showEvent(event);
+    fitText();
     if (m_first != nullptr) m_first->setFocus();
+}
+
+void TextPage::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    fitText();
+}
+
+void TextPage::fitText() {
+    const int room = std::min(kTextWidth, m_area->viewport()->width());
+    m_area->setMaximumHeight(m_text->heightForWidth(room) + 4);
 }
 
 void SeenPage::paintEvent(QPaintEvent*) {

@@ -12,6 +12,7 @@
 #include <QWidget>
 
 class QBoxLayout;
+class QScrollArea;
 
 namespace pellucid::gui {
 
@@ -27,15 +28,19 @@ public:
     void setTitle(const QString& title) { m_title->setText(title); }
     void setText(const QString& text) { m_text->setText(text); }
     QString text() const { return m_text->text(); }
-    /// In a row, or below each other. The first one is pressed by Return.
+    /// In a row. The first one is pressed by Return.
     QPushButton* addButton(const QString& id, const QString& text, const std::function<void()>& press);
-    void stackButtons();
+    void stackButtons(); ///< those that it has
 
 protected:
     void showEvent(QShowEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
+    void fitText(); ///< no more room than it needs
+
     QLabel *m_title, *m_text;
+    QScrollArea* m_area;
     QBoxLayout* m_buttons;
     QPushButton* m_first = nullptr;
 };

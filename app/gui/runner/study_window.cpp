@@ -19,11 +19,11 @@ namespace {
 constexpr double kMsPerSecond = 1000;
 constexpr std::uint64_t kBytesPerPixel = 4;
 
-struct Answers {
+struct VisionAnswer {
     const char *id, *text;
     ColorVision vision;
 };
-constexpr Answers kVisions[] = {
+constexpr VisionAnswer kVisions[] = {
     {"visionNormal", QT_TRANSLATE_NOOP("StudyWindow", "I see colours as most people do"), ColorVision::Normal},
     {"visionDeficient", QT_TRANSLATE_NOOP("StudyWindow", "I have a colour vision deficiency"), ColorVision::Deficient},
     {"visionUnsure", QT_TRANSLATE_NOOP("StudyWindow", "I am not sure"), ColorVision::Unsure},
@@ -120,12 +120,12 @@ void StudyWindow::makePlainPages() {
 
     auto* vision = page(Page::Vision, "studyVision", tr("How do you see colours?"));
     vision->setText(tr("Your answer helps to read the others."));
-    vision->stackButtons();
-    for (const Answers& a : kVisions)
+    for (const VisionAnswer& a : kVisions)
         vision->addButton(a.id, tr(a.text), [this, a] {
             m_participation->setColorVision(a.vision);
             turnTo(Page::Instructions);
         });
+    vision->stackButtons();
 
     const bool goesOn = m_participation->hasBegun();
     m_instructions = page(Page::Instructions, "studyInstructions", goesOn ? tr("Welcome back") : tr("What to do"));
