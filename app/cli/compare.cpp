@@ -9,32 +9,26 @@
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
-#include "render/feature_pictures.h"
 #include "render/memory_needs.h"
-#include "render/ssim.h"
+#include "report/comparison_files.h"
 #include "resolve.h"
-#include "tf/color_difference.h"
 
 namespace pellucid::cli {
 
 namespace {
-
-constexpr double kNoticed = 2.3; ///< ΔE that is just noticed
 
 struct Options {
     std::string a, b;
     SceneOptions scene;
     CameraOptions viewOfB;
     std::optional<int> frameOfB;
-    std::optional<std::string> difference, sideBySide;
+    std::optional<std::string> difference, sideBySide, figures;
 };
 
-/// One side: a picture and, unless it was a file, what it shows.
+/// One side, and remarks about it.
 struct Side {
-    Image image;
-    std::vector<std::string> names; ///< of the features
-    std::vector<double> opacity, fs;
-    std::vector<FeatureMeasures> measures;
+    std::string name;
+    ComparedSide compared;
     std::vector<std::string> notices;
 };
 
@@ -48,15 +42,32 @@ bool isSession(const std::string& name) { return lowerCase(name).ends_with(".pel
 
 void check(const Options& o) {
     const bool a = isPicture(o.a), b = isPicture(o.b);
-    if (a != b)
+    if (o.b.empty() && !isSession(o.a))
+        throw UsageError("B is missing", o.a, "name what it is compared with; a session alone may keep it");
+    if (a != b && !o.b.empty())
         throw UsageError("one is a picture and the other is not", o.a + " and " + o.b,
                          "name two pictures, or two transfer functions or sessions");
     refuse({{a && o.scene.volume.path.has_value(), "two pictures need no volume", "VOLUME", "leave it out"}});
 }
 
+/// B as the session of A keeps it.
+Scene keptB(const Options& o, const Scene& a, Progress& progress) {
+    Session session = a.session;
+    if (!session.comparison->b)
+        throw UsageError("the session keeps nothing to compare with", o.a,
+                         "name B, or pin a state in the window and save the session again");
+    session.comparison.edit([&](ComparisonView& view) {
+        view.sameView = view.sameView || o.viewOfB.view || o.viewOfB.namedView;
+        view.sameFrame = view.sameFrame || o.frameOfB;
+    });
+    session.camera = a.camera;
+    return pellucid::resolve(comparedSession(session), a, toMeasureAndDrawField(), progress.phase("loading"));
+}
+
 Side drawn(const Options& o, bool isB, Progress& progress) {
     SceneOptions options = o.scene;
-    const std::string& name = isB ? o.b : o.a;
+    const bool isKept = isB && o.b.empty();
+    const std::string& name = isB && !isKept ? o.b : o.a;
     if (isSession(name))
         options.sessionFile = name;
     else
@@ -68,81 +79,29 @@ Side drawn(const Options& o, bool isB, Progress& progress) {
     }
     if (isB && o.frameOfB) options.volume.frame = o.frameOfB;
     const Opened opened = resolve(options, progress, {toMeasureAndDrawField(), true});
-    const MeasureInput input = measureInput(opened.scene);
+    const Scene scene = isKept ? keptB(o, opened.scene, progress) : opened.scene;
+    const MeasureInput input = measureInput(scene);
     Workspace workspace;
     prepare(workspace, input, progress);
-    Side side;
-    side.measures = workspace.measure(input, progress.phase("visibility")).features;
-    side.opacity = featureOpacities(input.tf);
-    side.names = namesWithEmpty(opened.scene.tf, *opened.scene.histogram);
-    const PictureInput picture = options.picture.pictureOf(opened.scene);
-    const auto renderer = makeRenderer(opened.scene.session.measure->engine, picture.volume);
-    FeaturePictures pictures =
-        featurePictures(*renderer, picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
-    side.fs = featureSaliency(pictures, progress.phase("2D saliency")).shares;
-    side.image = std::move(pictures.whole);
-    side.notices = opened.notices();
-    return side;
+    const SideInput side = sideInput(scene, options.picture.pictureOf(scene), true);
+    const Measures measures = workspace.measure(input, progress.phase("visibility"));
+    const auto renderer = makeRenderer(scene.session.measure->engine, side.picture.volume);
+    return {isKept ? opened.scene.session.comparison->b->name : name,
+            comparedSide(side, measures, *renderer, progress.phase("pictures")), opened.notices()};
 }
 
-/// Features of both by their names: index in each, −1 where it has none.
-std::vector<std::pair<int, int>> pairsOf(const Side& a, const Side& b) {
-    std::vector<std::pair<int, int>> pairs;
-    const auto indexIn = [](const Side& side, const std::string& name) {
-        const auto at = std::ranges::find(side.names, name);
-        return at == side.names.end() ? -1 : static_cast<int>(at - side.names.begin());
-    };
-    for (std::size_t i = 0; i < a.names.size(); ++i) pairs.emplace_back(static_cast<int>(i), indexIn(b, a.names[i]));
-    for (std::size_t i = 0; i < b.names.size(); ++i)
-        if (indexIn(a, b.names[i]) < 0) pairs.emplace_back(-1, static_cast<int>(i));
-    return pairs;
-}
-
-const std::string& nameOf(const std::pair<int, int>& pair, const Side& a, const Side& b) {
-    return pair.first >= 0 ? a.names[static_cast<std::size_t>(pair.first)]
-                           : b.names[static_cast<std::size_t>(pair.second)];
-}
-
-std::string tableOf(const Side& a, const Side& b) {
-    Table table({"feature", "VWS A", "B", "visibility A", "B", "2DFS A", "B", "opacity A", "B"});
-    for (const auto& pair : pairsOf(a, b)) {
-        std::vector<std::string> row{nameOf(pair, a, b)};
-        const auto add = [&](const auto& of) {
-            row.push_back(pair.first >= 0 ? fixedText(of(a, static_cast<std::size_t>(pair.first)), 4) : "-");
-            row.push_back(pair.second >= 0 ? fixedText(of(b, static_cast<std::size_t>(pair.second)), 4) : "-");
-        };
-        add([](const Side& s, std::size_t f) { return s.measures[f].vws; });
-        add([](const Side& s, std::size_t f) { return s.measures[f].visibility; });
-        add([](const Side& s, std::size_t f) { return s.fs[f]; });
-        add([](const Side& s, std::size_t f) { return s.opacity[f]; });
+std::string tableOf(const Comparison& comparison) {
+    std::vector<std::string> head{"feature"};
+    for (const ComparedFigure& figure : comparedFigures())
+        head.insert(head.end(), {std::string(figure.words) + " A", "B"});
+    Table table(head);
+    for (const FeaturePair& pair : comparison.features) {
+        std::vector<std::string> row{pair.name + (pair.isEmpty() ? " (empty)" : "")};
+        for (const ComparedFigure& figure : comparedFigures())
+            for (const auto* of : {&pair.a, &pair.b}) row.push_back(*of ? fixedText(*figure.of(**of), 4) : "-");
         table.add(row);
     }
     return table.text();
-}
-
-Json featuresOf(const Side& a, const Side& b) {
-    Json features = Json::array();
-    const auto figures = [](const Side& s, int index) -> Json {
-        if (index < 0) return nullptr;
-        const auto f = static_cast<std::size_t>(index);
-        return {{"vws", s.measures[f].vws},
-                {"visibility", s.measures[f].visibility},
-                {"fs", s.fs[f]},
-                {"opacity", s.opacity[f]}};
-    };
-    for (const auto& pair : pairsOf(a, b))
-        features.push_back(
-            {{"name", nameOf(pair, a, b)}, {"a", figures(a, pair.first)}, {"b", figures(b, pair.second)}});
-    return features;
-}
-
-Image beside(const Image& a, const Image& b) {
-    Image both(a.width + b.width, a.height);
-    for (int y = 0; y < a.height; ++y) {
-        std::copy_n(a.pixel(0, y), 4 * a.width, both.pixel(0, y));
-        std::copy_n(b.pixel(0, y), 4 * b.width, both.pixel(a.width, y));
-    }
-    return both;
 }
 
 Answer run(const Options& o, Progress& progress) {
@@ -153,43 +112,23 @@ Answer run(const Options& o, Progress& progress) {
         const std::string& name = isB ? o.b : o.a;
         if (!files) return drawn(o, isB, progress);
         addInputFile(name);
-        Side read;
-        read.image = readImage(name);
-        return read;
+        return Side{name, {readImage(name), {}}, {}};
     };
-    const Side a = side(false), b = side(true);
-    if (a.image.width != b.image.width || a.image.height != b.image.height)
-        throw Error("the pictures differ in size", o.a + " and " + o.b, "draw them in one size");
-    const Plane map = deltaEOf(a.image, b.image);
-    const double alike = ssim(a.image, b.image), mean = meanDeltaE(a.image, b.image);
-    const auto largest = static_cast<double>(*std::ranges::max_element(map.values));
-    const auto noticed = static_cast<double>(std::ranges::count_if(map.values, [](float d) { return d > kNoticed; })) /
-                         static_cast<double>(map.values.size());
-    std::string text = files ? "" : tableOf(a, b);
-    text += "SSIM " + fixedText(alike, 4) + ", mean delta E " + fixedText(mean, 3) + ", largest " +
-            fixedText(largest, 2) + ", " + fixedText(100 * noticed, 1) + " % of the pixels above 2.3\n";
-    Json json{{"command", "compare"},
-              {"a", o.a},
-              {"b", o.b},
-              {"size", {a.image.width, a.image.height}},
-              {"ssim", alike},
-              {"delta_e", {{"mean", mean}, {"largest", largest}, {"noticed", noticed}}}};
-    if (!files) json["features"] = featuresOf(a, b);
-    const auto wrote = [&](const std::string& path) {
-        text += "wrote " + path + "\n";
-        json["files"].push_back(path);
+    Side a = side(false), b = side(true);
+    const Comparison comparison = comparisonOf(a.name, std::move(a.compared), b.name, std::move(b.compared));
+    std::string text = (files ? "" : tableOf(comparison)) + wordsOf(comparison.difference) + "\n";
+    Json json{{"command", "compare"}};
+    json.update(jsonOf(comparison));
+    const auto write = [&](const std::optional<std::string>& path, const auto& writer) {
+        if (!path) return;
+        writer(*path);
+        text += "wrote " + *path + "\n";
+        json["files"].push_back(*path);
     };
-    if (o.difference) {
-        Plane shown = map; // as floats ΔE itself, as a picture white for the 100 from black to white
-        if (!lowerCase(*o.difference).ends_with(".exr"))
-            for (float& d : shown.values) d = std::min(1.0f, d / 100);
-        writePlane(shown, *o.difference);
-        wrote(*o.difference);
-    }
-    if (o.sideBySide) {
-        writeImage(beside(a.image, b.image), *o.sideBySide);
-        wrote(*o.sideBySide);
-    }
+    write(o.difference, [&](const std::string& path) { writeDifference(comparison.difference, path); });
+    write(o.sideBySide,
+          [&](const std::string& path) { writeImage(sideBySide(comparison.imageA, comparison.imageB), path); });
+    write(o.figures, [&](const std::string& path) { writeFigures(comparison, path); });
     json["seconds"] = {{"total", total.seconds()}};
     Answer answer{std::move(text), std::move(json), a.notices};
     for (const std::string& notice : b.notices)
@@ -208,7 +147,7 @@ Command addCompare(CLI::App& program) {
                     "VOLUME, as --tf of the other commands takes it")
         ->required()
         ->type_name("");
-    app->add_option("B", o->b, "likewise")->required()->type_name("");
+    app->add_option("B", o->b, "likewise; left out, what the session A keeps to be compared with")->type_name("");
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
     o->scene.variables.add(*app);
     o->scene.camera.add(*app);
@@ -224,6 +163,8 @@ Command addCompare(CLI::App& program) {
                   "write delta E of each pixel: .exr (floats) or .png (16 bits, white at 100)", checkPlaneSuffix);
     addOutputFile(*app, "--side-by-side", o->sideBySide, "write both as one picture: .png, .tif, .exr or .jpg",
                   checkImageSuffix);
+    addOutputFile(*app, "--figures", o->figures, "write the figures of both as a table (.csv) or as JSON (.json)",
+                  checkFiguresSuffix);
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -236,6 +236,37 @@ struct PictureSaliencyView {
 template <>
 std::span<const Setting> settingsOf<PictureSaliencyView>();
 
+/// A state that is kept to be compared with: of what belongs to the data, the present session has the rest.
+struct ComparedState {
+    std::string name;             ///< what people call it
+    Part<TransferFunction> tf;    ///< in its own range
+    std::optional<Camera> camera; ///< empty: the home view
+    int frame = 0;
+    Part<DisplaySettings> display;
+    Part<Clipping> clipping;
+    bool operator==(const ComparedState&) const = default;
+};
+
+/// What the window shows beside the present state A (docs/guide.md, "Comparing"). As camera and crosshair it is no step
+/// of the history.
+enum class CompareMode { Off, SideBySide, Wipe, Difference };
+template <>
+inline constexpr auto kNamesOf<CompareMode> = enumNames("comparison", "off", "side-by-side", "wipe", "difference");
+struct ComparisonView {
+    CompareMode mode = CompareMode::Off;
+    bool sameView = true;                ///< B is seen from where A is
+    bool sameFrame = true;               ///< of a series
+    bool sameLook = true;                ///< in A's light and display, cut as A is
+    double divider = 0.5;                ///< of the wipe: share of the width that A has
+    double strength = 0.85;              ///< opacity of the difference where it is largest
+    std::optional<ComparedState> b = {}; ///< empty: there is nothing to compare with
+
+    bool isOn() const { return b && mode != CompareMode::Off; }
+    bool operator==(const ComparisonView&) const = default;
+};
+template <>
+std::span<const Setting> settingsOf<ComparisonView>();
+
 /// A field in the place of the data in the picture, under colours of its own. No figure depends on it.
 struct FieldView {
     std::optional<FieldKind> kind;  ///< empty: the data
@@ -310,6 +341,7 @@ struct Session {
     Part<SliceViews> slices;
     Part<FieldView> field; ///< what is drawn in the place of the data
     Part<PictureSaliencyView> pictureSaliency;
+    Part<ComparisonView> comparison;
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
     std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
 

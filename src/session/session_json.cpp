@@ -535,6 +535,28 @@ json fromCamera(const Camera& camera) {
     return j;
 }
 
+json fromComparison(const ComparisonView& c) {
+    json j = from(c);
+    if (!c.b) return j;
+    j["b"] = {{"name", c.b->name},
+              {"tf", fromTf(*c.b->tf)},
+              {"frame", c.b->frame},
+              {"display", fromDisplay(*c.b->display)},
+              {"clip", fromClipping(*c.b->clipping)}};
+    if (c.b->camera) j["b"]["camera"] = fromCamera(*c.b->camera);
+    return j;
+}
+
+ComparisonView toComparison(const JsonValue& j) {
+    auto c = to<ComparisonView>(j);
+    if (!j.has("b")) return c;
+    const JsonValue b = j["b"];
+    c.b = ComparedState{b["name"].text(),        toTf(b["tf"]),        {}, b["frame"].whole(0, kMostCount),
+                        toDisplay(b["display"]), toClipping(b["clip"])};
+    if (b.has("camera")) c.b->camera = cameraFromJson(b["camera"]);
+    return c;
+}
+
 json fromRunStart(const RunStart& start) {
     json j{{"tf", fromTf(start.tf)},
            {"camera", fromCamera(start.camera)},
@@ -634,6 +656,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"slices", fromSlices(*s.slices)},
            {"field", fromField(*s.field)},
            {"picture_saliency", from(*s.pictureSaliency)},
+           {"comparison", fromComparison(*s.comparison)},
            {"target_keys", fromTargetKeys(*s.targetKeys)},
            {"adapt", from(*s.adapt)},
            {"hsb", fromHsb(*s.hsb)},
@@ -671,6 +694,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
     if (j.has("field")) s.field = toField(j["field"]);
     if (j.has("picture_saliency")) s.pictureSaliency = to<PictureSaliencyView>(j["picture_saliency"]);
+    if (j.has("comparison")) s.comparison = toComparison(j["comparison"]);
     if (j.has("target_keys")) s.targetKeys = toTargetKeys(j["target_keys"]);
     if (j.has("adapt")) s.adapt = to<AdaptSettings>(j["adapt"]);
     if (j.has("hsb")) s.hsb = toHsb(j["hsb"]);
@@ -688,9 +712,9 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         s.runs = std::move(runs);
     }
     s.extraJson = j.unknownKeys(
-        {"format",  "version",   "variables", "frame",    "features", "hold_targets",     "camera", "clip",
-         "display", "reference", "measure",   "optimize", "refine",   "slices",           "field",  "target_keys",
-         "adapt",   "hsb",       "ground",    "runs",     "density",  "picture_saliency", "title"});
+        {"format",  "version",   "variables", "frame",    "features", "hold_targets",     "camera",     "clip",
+         "display", "reference", "measure",   "optimize", "refine",   "slices",           "field",      "target_keys",
+         "adapt",   "hsb",       "ground",    "runs",     "density",  "picture_saliency", "comparison", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -254,6 +254,62 @@ std::span<const Setting> settingsOf<SliceViews>() {
 }
 
 template <>
+std::span<const Setting> settingsOf<ComparisonView>() {
+    using C = ComparisonView;
+    constexpr auto hasB = [](const void* c) { return static_cast<const C*>(c)->b.has_value(); };
+    constexpr auto isWipe = [](const void* c) {
+        return static_cast<const C*>(c)->b && static_cast<const C*>(c)->mode == CompareMode::Wipe;
+    };
+    constexpr auto isDifference = [](const void* c) {
+        return static_cast<const C*>(c)->b && static_cast<const C*>(c)->mode == CompareMode::Difference;
+    };
+    static constexpr const char* kModes[] = {"Off", "Side by side", "Wipe", "Difference"};
+    static const Setting kSettings[] = {
+        {.key = "mode",
+         .at = member<&C::mode>,
+         .words = "&Show",
+         .help = "B beside A; both in one picture with a border between them that the mouse moves; or A under a map of "
+                 "the colour differences to B.",
+         .choices = kModes,
+         .option = "",
+         .used = hasB},
+        {.key = "same_view",
+         .at = member<&C::sameView>,
+         .words = "Same &view",
+         .help = "A and B are seen from one place: whoever turns one turns the other.",
+         .option = "",
+         .used = hasB},
+        {.key = "same_frame",
+         .at = member<&C::sameFrame>,
+         .words = "Same &frame",
+         .help = "B follows the frames of the series; else it stays at its own.",
+         .option = "",
+         .used = hasB},
+        {.key = "same_look",
+         .at = member<&C::sameLook>,
+         .words = "Same &light and clipping",
+         .help = "B is lit, displayed and cut as A is; else as it was when it was taken.",
+         .option = "",
+         .used = hasB},
+        {.key = "divider",
+         .at = member<&C::divider>,
+         .words = "&Border",
+         .help = "The share of the width that A has of a wipe.",
+         .range = {0, 1},
+         .option = "",
+         .used = isWipe},
+        {.key = "strength",
+         .at = member<&C::strength>,
+         .words = "S&trength",
+         .help = "The opacity of the difference over the picture where it is largest.",
+         .range = {0, 1, Open::Low},
+         .option = "",
+         .used = isDifference},
+    };
+    return kSettings;
+}
+
+template <>
 std::span<const Setting> settingsOf<PictureSaliencyView>() {
     using P = PictureSaliencyView;
     constexpr auto isOn = [](const void* p) { return static_cast<const P*>(p)->on; };

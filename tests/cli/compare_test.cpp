@@ -1,8 +1,14 @@
 // `compare`: pictures, transfer functions, views and frames.
 #include <catch2/catch.hpp>
 
+#include <fstream>
+
+#include "base/round_numbers.h"
 #include "cli_runner.h"
 #include "image_io/image_file.h"
+#include "session/comparison.h"
+#include "session/session_json.h"
+#include "tf/transfer_function.h"
 
 using nlohmann::json;
 using namespace pellucid;
@@ -53,7 +59,8 @@ TEST_CASE("two pictures are compared pixel by pixel", "[cli][compare]") {
 
 TEST_CASE("two transfer functions are compared by their pictures and figures", "[cli][compare]") {
     const Workshop w;
-    const json j = w.json(Words{"compare", "tents:3:0.1", "tents:3:0.8"} + kView + Words{"--difference", "d.exr"});
+    const json j = w.json(Words{"compare", "tents:3:0.1", "tents:3:0.8"} + kView +
+                          Words{"--difference", "d.exr", "--figures", "figures.csv"});
     REQUIRE(j["features"].size() == 3);
     for (const auto& [side, peak] : {std::pair{"a", "0.1"}, std::pair{"b", "0.8"}}) {
         const json alone = w.json(Words{"measure"} + kView + Words{"--2dfs", "--tf", std::string("tents:3:") + peak});
@@ -62,6 +69,12 @@ TEST_CASE("two transfer functions are compared by their pictures and figures", "
                 CHECK(j["features"][f][side][figure] == alone["features"][f][figure]);
     }
     CHECK(j["delta_e"]["mean"].get<double>() > 1);
+    std::ifstream table(w.path("figures.csv"));
+    std::string head, first;
+    std::getline(table, head);
+    std::getline(table, first);
+    CHECK(head == "feature,figure,a,b,difference");
+    CHECK(first.starts_with("f1,vws," + exactText(j["features"][0]["a"]["vws"].get<double>()) + ","));
     // What is compared are the pictures that render draws; but for 8 bits.
     w.json(Words{"render"} + kView + Words{"--tf", "tents:3:0.1", "--out", "a.png"});
     w.json(Words{"render"} + kView + Words{"--tf", "tents:3:0.8", "--out", "b.png"});
@@ -85,6 +98,28 @@ TEST_CASE("two views and two frames are compared", "[cli][compare]") {
     CHECK(w.json(Words{"compare", "tents:3", "tents:3"} + kView)["ssim"] == 1);
 }
 
+TEST_CASE("a session is compared with the state that it keeps", "[cli][compare]") {
+    const Workshop w;
+    VolumeSource source;
+    source.path = "sample:shells";
+    source.sampleSize = 24;
+    Session session = sessionOf(source);
+    session.setTf(tents(3, 0.8));
+    ComparisonView view;
+    view.b = comparedState(session, "pinned");
+    session.setTf(tents(3, 0.1));
+    const Words command{"compare", "s.pellucid.json", "--size", "64x48", "--engine", "cpu"};
+    writeSession(session, w.path("s.pellucid.json").string());
+    CHECK(w.run(command).err.find("keeps nothing to compare with") != std::string::npos);
+    session.comparison = view;
+    writeSession(session, w.path("s.pellucid.json").string());
+    const json kept = w.json(command);
+    CHECK(kept["b"] == "pinned");
+    const json named = w.json(Words{"compare", "tents:3:0.1", "tents:3:0.8"} + kView);
+    CHECK(kept["features"] == named["features"]);
+    CHECK(kept["ssim"] == named["ssim"]);
+}
+
 TEST_CASE("what cannot be compared is said", "[cli][compare]") {
     const Workshop w;
     writeImage(half(0, 0), w.path("a.png").string());
@@ -99,7 +134,8 @@ TEST_CASE("what cannot be compared is said", "[cli][compare]") {
     refused({"a.png", "a.png", "sample:shells"}, 2, "need no volume");
     refused({"a.png", "none.png"}, 1, "none.png");
     refused({"tents:3", "tents:2"}, 2, "VOLUME");
-    refused({"a.png"}, 2, "B");
+    refused({"a.png"}, 2, "B is missing");
     refused({"a.png", "a.png", "--difference", "a.png"}, 2, "a.png");
     refused({"a.png", "a.png", "--difference", "d.jpg"}, 2, ".exr or .png");
+    refused({"a.png", "a.png", "--figures", "d.txt"}, 2, ".csv or .json");
 }

@@ -146,5 +146,6 @@ TEST_CASE("every setting goes through every door, and each refuses in the same w
     walk<GroundView>();
     walk<SliceViews>();
     walk<PictureSaliencyView>();
+    walk<ComparisonView>();
     walk<HsbMapping>();
 }

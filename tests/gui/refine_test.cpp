@@ -12,7 +12,6 @@
 #include "panels/refine_panel.h"
 #include "render/clip_handles.h"
 #include "tf/palette_bar.h"
-#include "view/picture_pair.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -429,15 +428,10 @@ TEST_CASE("before and after stand side by side", "[refine]") {
     REQUIRE_FALSE(w.document().tf() == tf);
     CHECK(w.picture() != picture);
     w.child<QPushButton>("sideBySideButton").click();
-    auto& pair = w.child<PicturePair>("picturePair");
-    REQUIRE(waitFor([&] { return pair.isComplete(); }));
-    CHECK(pair.picture(0).size() == pair.picture(1).size());
-    CHECK(pair.picture(0) != pair.picture(1));
-    CHECK(pair.findChild<QLabel*>("captionBefore")->text().contains("energy"));
-    CHECK_FALSE(pair.findChild<QLabel*>("pairWords")->text().isEmpty());
-    // It follows the camera.
-    const QImage after = pair.picture(1);
-    drag(w.view(), {200, 200}, {300, 200});
-    REQUIRE(waitFor([&] { return pair.isComplete() && pair.picture(1) != after; }));
-    CHECK(pair.picture(0) != pair.picture(1));
+    const ComparisonController& comparing = w.controllers().comparing;
+    REQUIRE(waitFor([&] { return comparing.state() == ComparisonController::State::Current; }));
+    CHECK(rangeless(comparing.sceneB()->tf).points == rangeless(tf).points);
+    CHECK(comparing.view().mode == CompareMode::SideBySide);
+    CHECK(comparing.comparison()->difference.largest > 0);
+    CHECK(w.child<QLabel>("compareName").text() == "B: Before the refinement");
 }

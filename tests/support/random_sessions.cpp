@@ -318,6 +318,25 @@ TransferFunction randomTf(Random& random, FeatureId first) {
     return tf;
 }
 
+ComparisonView randomComparison(Random& random, const Session& of) {
+    ComparisonView view{static_cast<CompareMode>(random.below(4)),
+                        random.chance(0.5),
+                        random.chance(0.5),
+                        random.chance(0.5),
+                        0.05 * random.below(21),
+                        0.05 * (1 + random.below(20)),
+                        {}};
+    if (random.chance(0.2)) return view;
+    view.b = ComparedState{"B \"" + std::to_string(random.below(9)) + "\"",
+                           randomTf(random, 1),
+                           {},
+                           random.below(99),
+                           of.display,
+                           of.clipping};
+    if (random.chance(0.7)) view.b->camera = randomCamera(random);
+    return view;
+}
+
 Session randomSession(std::uint32_t number) {
     Random random(number);
     Session s;
@@ -358,6 +377,7 @@ Session randomSession(std::uint32_t number) {
     if (random.chance(0.7)) s.refine = randomRefine(random);
     if (random.chance(0.7)) s.slices = randomSlices(random);
     s.field = randomField(random);
+    if (random.chance(0.5)) s.comparison = randomComparison(random, s);
     if (random.chance(0.7))
         s.pictureSaliency = PictureSaliencyView{random.chance(0.5), static_cast<SaliencyMapShown>(random.below(4)),
                                                 0.05 * (1 + random.below(20))};

@@ -41,6 +41,7 @@ Controllers::Controllers(Services& all) : services(all) {
     addAnnotationActions(services);
     fields.addActions();
     pictureSaliency.addActions();
+    comparing.addActions();
     addSliceActions(services);
     player.addActions();
     adapting.addActions();
@@ -70,6 +71,9 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(saving, &SaveController::busyChanged);
     watch(fields, &FieldController::busyChanged);
     watch(pictureSaliency, &PictureSaliencyController::busyChanged);
+    watch(comparing, &ComparisonController::busyChanged);
+    QObject::connect(&refining, &RefineController::pairWanted, &comparing,
+                     &ComparisonController::compareWithRefinement);
     watch(player, &PlayerController::changed);
     watch(studies, &StudyController::busyChanged);
     watch(adapting, &AdaptController::changed);

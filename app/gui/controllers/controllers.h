@@ -2,6 +2,7 @@
 #pragma once
 
 #include "controllers/adapt_controller.h"
+#include "controllers/comparison_controller.h"
 #include "controllers/feature_actions.h"
 #include "controllers/field_controller.h"
 #include "controllers/live_controller.h"
@@ -38,6 +39,7 @@ struct Controllers {
     PlayerController player{services, opening}; ///< frames of a series
     AdaptController adapting{services, player}; ///< transfer functions over time
     ViewSearchController views{services, optimizing};
+    ComparisonController comparing{services, player, refining};
     ProbeController probe{services};
     StudyController studies{services};
     TargetActions targets{services};

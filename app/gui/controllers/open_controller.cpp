@@ -30,11 +30,6 @@ constexpr auto kRecentKey = "recentFiles", kFolder = "volumeFolder";
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
 bool isTf(const QString& path) { return hasTfSuffix(path.toStdString()); }
-QString tfPatterns() {
-    QStringList patterns;
-    for (const char* suffix : tfSuffixes()) patterns << QString("*%1").arg(suffix);
-    return patterns.join(' ');
-}
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
 
 VolumeSource sourceAt(const QString& path) {

@@ -5,6 +5,8 @@
 #include <QFileInfo>
 #include <QSettings>
 
+#include "tf/formats/tf_file.h"
+
 namespace pellucid::gui {
 
 /// The folder kept under `key`, such as "volumeFolder"; `first` before there is one.
@@ -24,6 +26,13 @@ inline QString askSavePath(QWidget* parent, const QString& title, const QString&
     if (!path.endsWith(ending, Qt::CaseInsensitive)) path += suffix;
     keepFolderOf(key, path);
     return path;
+}
+
+/// Of the files that hold transfer functions: "*.tf.json *.tfi".
+inline QString tfPatterns() {
+    QStringList patterns;
+    for (const char* suffix : tfSuffixes()) patterns << QString("*%1").arg(suffix);
+    return patterns.join(' ');
 }
 
 /// Asks for files to read; empty: the user gave up.

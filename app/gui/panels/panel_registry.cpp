@@ -6,7 +6,7 @@ namespace pellucid::gui {
 using Panel = PanelInfo();
 Panel transferFunctionPanel, playerPanel, featuresPanel, refinePanel, influencePanel, convergencePanel, displayPanel,
     lightPanel, clipPanel, fieldsPanel, galleryPanel, viewsPanel, settingsPanel, spacePanel, variablesPanel,
-    temporalPanel, pictureSaliencyPanel;
+    temporalPanel, pictureSaliencyPanel, comparePanel;
 
 std::vector<PanelInfo> panelRegistry() {
     return {transferFunctionPanel(),
@@ -20,6 +20,7 @@ std::vector<PanelInfo> panelRegistry() {
             clipPanel(),
             fieldsPanel(),
             pictureSaliencyPanel(),
+            comparePanel(),
             galleryPanel(),
             viewsPanel(),
             settingsPanel(),

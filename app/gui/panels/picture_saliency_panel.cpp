@@ -41,13 +41,7 @@ PictureSaliencyPanel::PictureSaliencyPanel(Services& services, PictureSaliencyCo
     auto* rows = new SettingRows(m_services, form, settingPart<PictureSaliencyView>(&Session::pictureSaliency));
     rows->add("on", {.id = "pictureSaliencyCheck"});
     rows->add("map", {.id = "pictureSaliencyMap"});
-    rows->add("strength", {.id = "pictureSaliencyStrength",
-                           .slider = true,
-                           .decimals = 0,
-                           .step = 5,
-                           .factor = 100,
-                           .suffix = tr(" %"),
-                           .least = 1});
+    rows->add("strength", percentLook("pictureSaliencyStrength"));
     rows->follow();
     form.addRow(m_shares);
     form.addRow(m_state);

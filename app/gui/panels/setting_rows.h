@@ -66,6 +66,11 @@ struct RowLook {
     std::function<void(void*)> then = {}; ///< done to the settings after a change of this one: what follows of it
 };
 
+/// A slider of a share, from 1 % on.
+inline RowLook percentLook(const QString& id) {
+    return {.id = id, .slider = true, .decimals = 0, .step = 5, .factor = 100, .suffix = QObject::tr(" %"), .least = 1};
+}
+
 /// Of the history, for rows that share it: steps of one key in a row become one. Empty: each row has its own.
 struct RowStep {
     QString text = {}, mergeKey = {};

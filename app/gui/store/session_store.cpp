@@ -17,6 +17,7 @@ constexpr std::size_t kMostData = 3; // volumes that the history keeps in memory
 // frames by itself.
 Session withoutGaze(Session session) {
     session.camera.reset();
+    session.comparison = {};
     if (session.slices->crosshair) session.slices.edit([](SliceViews& s) { s.crosshair.reset(); });
     session.frame = 0;
     session.goals.set(goalsAt(session, 0));
@@ -80,6 +81,7 @@ Scene SessionStore::changedBy(const Change& change, const Scene& from, const Sce
 Scene SessionStore::withPresentGaze(Scene scene) const {
     scene.session.camera = m_scene.session.camera;
     scene.camera = m_scene.camera;
+    scene.session.comparison = m_scene.session.comparison;
     const auto& crosshair = m_scene.session.slices->crosshair;
     if (scene.session.slices->crosshair != crosshair)
         scene.session.slices.edit([&](SliceViews& s) { s.crosshair = crosshair; });
@@ -309,6 +311,13 @@ void SessionStore::setCrosshair(const Vec3& voxel) {
     Scene next = m_scene;
     next.session.slices.edit([&](SliceViews& s) { s.crosshair = voxel; });
     show(std::move(next));
+}
+
+void SessionStore::setComparison(const std::function<void(ComparisonView&)>& change) {
+    if (!hasVolume()) return;
+    Scene next = m_scene;
+    next.session.comparison.edit(change);
+    if (!next.session.comparison.isSame(m_scene.session.comparison)) show(std::move(next));
 }
 
 bool SessionStore::isClean() const { return m_clean && withoutGaze(*m_clean) == withoutGaze(committed().session); }

@@ -16,9 +16,9 @@ namespace pellucid::gui {
 ///
 /// An edit is one step of the history. A preview (while the mouse is down, while an optimization runs) is none: it
 /// shows a change of the committed session until commit() or cancel(). An edit, undo or redo during a preview ends that
-/// first: an edit commits it, undo and redo cancel it. The camera has a history of its own, the crosshair of the slices
-/// and the frame of a series have none: undo never turns the view, nor goes to another frame. Steps of a series hold no
-/// volumes: they are undone on the frame that is there.
+/// first: an edit commits it, undo and redo cancel it. The camera has a history of its own, the crosshair of the
+/// slices, what is compared and the frame of a series have none: undo never turns the view, nor goes to another frame.
+/// Steps of a series hold no volumes: they are undone on the frame that is there.
 class SessionStore : public QObject {
     Q_OBJECT
 public:
@@ -64,6 +64,10 @@ public:
     QString undoText() const;
     QString redoText() const;
     int stepCount() const { return static_cast<int>(m_steps.size()); } ///< undone ones too
+    int doneCount() const { return static_cast<int>(m_index); }        ///< steps that could be undone
+    QString textOf(int step) const { return m_steps.at(static_cast<std::size_t>(step)).text; }
+    /// The session before a step, 0 ≤ step < stepCount().
+    const Session& sessionBefore(int step) const { return m_steps.at(static_cast<std::size_t>(step)).before.session; }
     void undo();
     void redo();
 
@@ -77,6 +81,9 @@ public:
 
     /// Where the slices meet, voxel coordinates. It has no history: undo leaves it where it is.
     void setCrosshair(const Vec3& voxel);
+
+    /// What stands beside the present state. It has no history either, and is no change that would be lost.
+    void setComparison(const std::function<void(ComparisonView&)>& change);
 
     /// Goes to the frame of `shown`: a scene of the present series with the data of another frame (resolve() made it
     /// off this thread). All else stays as it is in the present session, a preview under way included; targets follow

@@ -5,8 +5,11 @@
 #include <QMouseEvent>
 #include <QPainter>
 
+#include "controllers/comparison_controller.h"
 #include "services/services.h"
+#include "view/compared_view.h"
 #include "view/slice_bar.h"
+#include "view/wipe_divider.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -19,11 +22,17 @@ constexpr double kLeast = 0.12; // of the area, for each row and column
 
 } // namespace
 
-ViewGrid::ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, QWidget* parent)
-    : QWidget(parent), m_services(services), m_volume(volume), m_bar(new SliceBar(services, this)) {
+ViewGrid::ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, ComparisonController& comparing,
+                   QWidget* parent)
+    : QWidget(parent), m_services(services), m_volume(volume), m_comparing(comparing),
+      m_bar(new SliceBar(services, this)) {
     setObjectName("viewGrid");
     setMouseTracking(true);
     volume.setParent(this);
+    m_compared = new ComparedView(comparing, volume, this);
+    m_divider = new WipeDivider(comparing, this);
+    connect(m_compared, &ComparedView::pictureShown, this, &ViewGrid::slicesShown);
+    connect(&comparing, &ComparisonController::sceneChanged, this, &ViewGrid::followComparison);
     for (int a = 0; a < 3; ++a) {
         auto* pane = new SlicePane(services, fields, a, m_lane, this);
         m_panes[static_cast<std::size_t>(a)] = pane;
@@ -48,7 +57,7 @@ SliceViews::Layout ViewGrid::layoutNow() const {
 }
 
 bool ViewGrid::isComplete() const {
-    return (m_volume.isHidden() || m_volume.isComplete()) &&
+    return (m_volume.isHidden() || m_volume.isComplete()) && (m_compared->isHidden() || m_compared->isComplete()) &&
            std::all_of(m_panes.begin(), m_panes.end(), [](const SlicePane* p) { return p->isComplete(); });
 }
 
@@ -85,25 +94,61 @@ void ViewGrid::arrange() {
         const auto [top, bottom] = between(all.top(), all.height(), y0, y1);
         return QRect(left, top, right - left, bottom - top);
     };
+    const auto showVolume = [&](const QRect& place) {
+        m_volume.setVisible(m_alone == nullptr);
+        placeVolume(place);
+    };
     SlicePane &x = *m_panes[0], &y = *m_panes[1], &z = *m_panes[2];
     if (m_alone != nullptr) {
-        for (QWidget* widget : std::initializer_list<QWidget*>{&m_volume, &x, &y, &z}) show(*widget, all);
+        showVolume(all);
+        for (QWidget* widget : std::initializer_list<QWidget*>{&x, &y, &z}) show(*widget, all);
     } else if (m_arranged == Layout::Four) { // axial and the volume above, coronal and sagittal below
         show(z, cell(0, m_fourX, 0, m_fourY));
-        show(m_volume, cell(m_fourX, 1, 0, m_fourY));
+        showVolume(cell(m_fourX, 1, 0, m_fourY));
         show(y, cell(0, m_fourX, m_fourY, 1));
         show(x, cell(m_fourX, 1, m_fourY, 1));
     } else if (m_arranged == Layout::VolumeLarge) {
-        show(m_volume, cell(0, m_largeX, 0, 1));
+        showVolume(cell(0, m_largeX, 0, 1));
         show(z, cell(m_largeX, 1, 0, m_largeY[0]));
         show(y, cell(m_largeX, 1, m_largeY[0], m_largeY[1]));
         show(x, cell(m_largeX, 1, m_largeY[1], 1));
     } else {
-        show(m_volume, all);
+        showVolume(all);
         for (SlicePane* pane : m_panes) pane->hide();
     }
     update();
     Q_EMIT slicesShown();
+}
+
+void ViewGrid::placeVolume(const QRect& place) {
+    const bool shown = m_alone == nullptr && m_comparing.isShown();
+    m_compareMode = shown ? m_comparing.view().mode : CompareMode::Off;
+    m_arrangedDivider = m_comparing.view().divider;
+    const bool wipes = m_compareMode == CompareMode::Wipe, pairs = m_compareMode == CompareMode::SideBySide;
+    QRect a = place;
+    if (pairs) a.setWidth(std::max(1, (place.width() - kGap) / 2)); // both of one size
+    m_volume.setGeometry(a);
+    if (pairs) {
+        const QRect b = a.translated(a.width() + kGap, 0);
+        m_compared->place(b, b);
+    } else if (wipes) {
+        QRect seen = a;
+        seen.setLeft(std::min(a.right(), a.left() + m_divider->columnOf(a.width()))); // a pixel is left of it
+        m_compared->place(a, seen);
+        m_divider->place(a);
+    }
+    m_compared->setShown(pairs || wipes);
+    m_divider->setVisible(wipes);
+    if (wipes) {
+        m_compared->raise();
+        m_divider->raise();
+    }
+}
+
+void ViewGrid::followComparison() {
+    const CompareMode mode = m_alone == nullptr && m_comparing.isShown() ? m_comparing.view().mode : CompareMode::Off;
+    const bool moved = mode == CompareMode::Wipe && m_arrangedDivider != m_comparing.view().divider;
+    if (mode != m_compareMode || moved) arrange();
 }
 
 void ViewGrid::resizeEvent(QResizeEvent* event) {

@@ -12,7 +12,10 @@
 
 namespace pellucid::gui {
 
+class ComparedView;
+class ComparisonController;
 class SliceBar;
+class WipeDivider;
 
 /// Arranges the volume and the three slices as the session's layout says. The gaps between them can be dragged; one
 /// view can be made to fill all of it for a while, which is no part of the session. Views never change their parent:
@@ -21,11 +24,13 @@ class ViewGrid : public QWidget {
     Q_OBJECT
     Lane m_lane; // draws slices; outlives the panes, which are children
 public:
-    /// `fields`, which outlives this, says what slices show in the place of the data.
-    ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, QWidget* parent = nullptr);
+    /// `fields` says what slices show in the place of the data. All outlive this.
+    ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, ComparisonController& comparing,
+             QWidget* parent = nullptr);
     ~ViewGrid() override;
 
     VolumeView& volume() { return m_volume; }
+    ComparedView& compared() { return *m_compared; } ///< beside the volume, or over a part of it
     SlicePane& pane(int worldAxis) { return *m_panes.at(static_cast<std::size_t>(worldAxis)); }
     /// Every view that is shown is of the present state, and as good as it gets.
     bool isComplete() const;
@@ -48,12 +53,19 @@ protected:
 private:
     enum Gap { Upright = 1, Level = 2, SecondLevel = 4 }; ///< bits: where two cross both are taken
     void arrange();
+    void placeVolume(const QRect& place); ///< with B, where there is something to compare with
+    void followComparison();
     QRect area() const; ///< of the views, below the bar
     int gapsAt(const QPoint& point) const;
     SliceViews::Layout layoutNow() const;
 
     Services& m_services;
     VolumeView& m_volume;
+    ComparisonController& m_comparing;
+    ComparedView* m_compared;
+    WipeDivider* m_divider;
+    CompareMode m_compareMode = CompareMode::Off; ///< that is arranged
+    double m_arrangedDivider = 0;
     SliceBar* m_bar;
     std::array<SlicePane*, 3> m_panes; // by world axis
     SlicePane* m_alone = nullptr;

@@ -1,10 +1,8 @@
 #include "view/volume_view.h"
 
-#include <cmath>
-
 #include <map>
 
-#include <QApplication>
+#include <QCoreApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QSettings>
@@ -14,20 +12,12 @@
 #include "base/parallel.h"
 #include "controllers/field_controller.h"
 #include "jobs/rest_timer.h"
-#include "render/camera_motion.h"
-#include "store/view_edits.h"
 #include "view/annotation_layer.h"
 #include "view/cpu_surface.h"
 #include "view/gl_surface.h"
 
 namespace pellucid::gui {
 namespace {
-
-constexpr double kDegreesPerView = 220; // of a drag across the height of the view
-constexpr double kZoomPerView = 12;     // factor of a right-drag across the height of the view
-constexpr double kZoomPerNotch = 1.15;  // factor of one notch of the wheel
-constexpr double kDegreesPerKey = 5;
-constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
 
 // Times are kept for the process, and for later ones.
 std::map<QString, RendererTimes>& timesOfProcess() {
@@ -65,6 +55,9 @@ QString reasonOf(const RendererTimes& times, bool gl) {
 
 VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent, FieldController* fields)
     : QWidget(parent), m_store(store), m_fields(fields), m_overlay(new ViewOverlay(store, this)),
+      m_hand(
+          *this, [&store] { return store.hasVolume() ? &store.scene() : nullptr; },
+          [&store](const Camera& camera, int gesture) { store.setCamera(camera, gesture); }),
       m_probe([](const int&, const JobControl& job) { return timeRenderers(job); },
               [this](const int&, RendererTimes& times) {
                   keepTimes(m_machine, times);
@@ -116,6 +109,8 @@ void VolumeView::chooseRenderer(ViewRenderer wanted) {
     setSurface(std::make_unique<CpuSurface>());
 }
 
+bool VolumeView::drawsByGl() const { return dynamic_cast<GlSurface*>(m_surface.get()) != nullptr; }
+
 /// Once the first picture is complete: opening comes before.
 void VolumeView::startProbe() {
     m_probeWaits = false;
@@ -124,10 +119,9 @@ void VolumeView::startProbe() {
 }
 
 void VolumeView::showTimes(const RendererTimes& times) {
-    const bool drawsGl = dynamic_cast<GlSurface*>(m_surface.get()) != nullptr;
-    m_reason = reasonOf(times, drawsGl);
+    m_reason = reasonOf(times, drawsByGl());
     // The other way, a view that has never shown OpenGL would have to make its window anew: it waits for the next one.
-    if (drawsGl && !times.preferGl(m_expectGl)) {
+    if (drawsByGl() && !times.preferGl(m_expectGl)) {
         m_reason = reasonOf(times, false);
         setSurface(std::make_unique<CpuSurface>());
     }
@@ -154,7 +148,7 @@ void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
 }
 
 void VolumeView::surfaceFailed(const Error& error) {
-    if (dynamic_cast<GlSurface*>(m_surface.get()) == nullptr) return Q_EMIT rendererFailed(error);
+    if (!drawsByGl()) return Q_EMIT rendererFailed(error);
     Q_EMIT rendererFailed({error.problem(), error.where(), tr("the CPU draws the picture from now on").toStdString()});
     later(this, [this] { // the one that failed is still on the stack
         m_reason = tr("OpenGL could not draw this.");
@@ -177,61 +171,27 @@ void VolumeView::lookFrom(const std::optional<Camera>& camera) {
 }
 
 void VolumeView::mousePressEvent(QMouseEvent* event) {
-    if (m_motion != Motion::None || m_overlay->isDragging()) return; // the first button decides until it is released
-    if (event->button() == Qt::LeftButton && m_overlay->press(event->position(), event->modifiers())) {
-        m_button = event->button();
-        return;
-    }
-    const bool shift = event->modifiers().testFlag(Qt::ShiftModifier);
-    m_motion = event->button() == Qt::LeftButton     ? (shift ? Motion::Pan : Motion::Rotate)
-               : event->button() == Qt::MiddleButton ? Motion::Pan
-               : event->button() == Qt::RightButton  ? Motion::Zoom
-                                                     : Motion::None;
-    if (m_motion == Motion::None) return event->ignore();
-    m_button = event->button();
-    m_last = m_pressed = event->position();
-    m_moved = false;
-    m_gesture = SessionStore::newGesture();
+    if (m_hand.isHolding() || m_overlay->isDragging()) return; // the first button decides until it is released
+    if (event->button() == Qt::LeftButton && m_overlay->press(event->position(), event->modifiers())) return;
+    if (!m_hand.press(*event)) event->ignore();
 }
 
 void VolumeView::mouseMoveEvent(QMouseEvent* event) {
     if (m_overlay->isDragging()) return m_overlay->drag(event->position(), event->modifiers());
-    if (m_motion == Motion::None) setCursor(m_overlay->cursorAt(event->position()));
-    if (m_motion == Motion::None || !m_store.hasVolume()) return;
-    if (!m_moved && (event->position() - m_pressed).manhattanLength() < QApplication::startDragDistance() / 3) return;
-    m_moved = true;
-    const QPointF way = event->position() - m_last;
-    m_last = event->position();
-    const Geometry& geometry = m_store.scene().volume->geometry();
-    const Camera camera = m_store.scene().camera;
-    const double perPixel = 1.0 / std::max(1, height());
-    if (m_motion == Motion::Rotate) // the volume follows the hand, so the eye goes the other way
-        m_store.setCamera(
-            rotated(camera, geometry, -way.x() * perPixel * kDegreesPerView, way.y() * perPixel * kDegreesPerView),
-            m_gesture);
-    if (m_motion == Motion::Pan) m_store.setCamera(panned(camera, geometry, way.x(), way.y(), height()), m_gesture);
-    if (m_motion == Motion::Zoom) zoomView(m_store, std::pow(kZoomPerView, -way.y() * perPixel), m_gesture);
+    if (!m_hand.isHolding()) setCursor(m_overlay->cursorAt(event->position()));
+    m_hand.move(*event);
 }
 
 void VolumeView::mouseReleaseEvent(QMouseEvent* event) {
-    if (event->button() != m_button) return;
-    const bool click = m_motion == Motion::Rotate && !m_moved && m_store.hasVolume();
-    m_motion = Motion::None;
-    m_overlay->release();
-    if (click) Q_EMIT clicked(event->position());
+    if (event->button() == Qt::LeftButton) m_overlay->release();
+    if (m_hand.release(*event)) Q_EMIT clicked(event->position());
 }
 
 void VolumeView::mouseDoubleClickEvent(QMouseEvent* event) {
-    if (event->button() == Qt::LeftButton) fitView(m_store);
+    if (event->button() == Qt::LeftButton) m_hand.fit();
 }
 
-void VolumeView::wheelEvent(QWheelEvent* event) {
-    if (event->angleDelta().y() == 0) return event->ignore();
-    if (!m_sinceWheel.isValid() || m_sinceWheel.restart() > kWheelPause) m_wheelGesture = SessionStore::newGesture();
-    m_sinceWheel.start();
-    zoomView(m_store, std::pow(kZoomPerNotch, event->angleDelta().y() / 120.0), m_wheelGesture);
-    event->accept();
-}
+void VolumeView::wheelEvent(QWheelEvent* event) { m_hand.wheel(*event); }
 
 void VolumeView::resizeEvent(QResizeEvent* event) {
     QWidget::resizeEvent(event);
@@ -240,32 +200,8 @@ void VolumeView::resizeEvent(QResizeEvent* event) {
 
 void VolumeView::keyPressEvent(QKeyEvent* event) {
     if (m_overlay->key(event->key())) return;
-    const auto turn = [this](double yaw, double pitch) {
-        if (!m_store.hasVolume()) return;
-        const Scene& scene = m_store.scene();
-        m_store.setCamera(
-            rotated(scene.camera, scene.volume->geometry(), yaw * kDegreesPerKey, pitch * kDegreesPerKey));
-    };
-    switch (event->key()) {
-    case Qt::Key_Left:
-        return turn(-1, 0);
-    case Qt::Key_Right:
-        return turn(1, 0);
-    case Qt::Key_Up:
-        return turn(0, 1);
-    case Qt::Key_Down:
-        return turn(0, -1);
-    case Qt::Key_Plus:
-    case Qt::Key_Equal:
-        return zoomView(m_store, kZoomPerNotch);
-    case Qt::Key_Minus:
-        return zoomView(m_store, 1.0 / kZoomPerNotch);
-    case Qt::Key_Escape:
-        if (m_overlay->isDragging()) return m_overlay->cancel();
-        break;
-    default:
-        break;
-    }
+    if (m_hand.key(event->key())) return;
+    if (event->key() == Qt::Key_Escape && m_overlay->isDragging()) return m_overlay->cancel();
     QWidget::keyPressEvent(event);
 }
 

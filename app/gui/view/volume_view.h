@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 
-#include <QElapsedTimer>
 #include <QPointF>
 #include <QWidget>
 
 #include "engines/renderer_probe.h"
 #include "jobs/job.h"
 #include "store/session_store.h"
+#include "view/camera_hand.h"
 #include "view/view_overlay.h"
 #include "view/view_surface.h"
 
@@ -37,6 +37,7 @@ public:
     ViewOverlay& overlay() { return *m_overlay; }
     /// Shows the scene from another camera for a while; empty: from its own again. The store hears nothing of it.
     void lookFrom(const std::optional<Camera>& camera);
+    bool drawsByGl() const; ///< else by the CPU
     QString rendererName() const { return m_surface->rendererName(); }
     QString rendererReason() const { return m_reason; } ///< why it draws, a sentence
 
@@ -60,7 +61,6 @@ protected:
     void resizeEvent(QResizeEvent* event) override;
 
 private:
-    enum class Motion { None, Rotate, Pan, Zoom };
     void setSurface(std::unique_ptr<ViewSurface> surface);
     void surfaceFailed(const Error& error);
     void chooseRenderer(ViewRenderer wanted);
@@ -73,13 +73,7 @@ private:
     std::optional<Camera> m_glimpse;
     std::unique_ptr<ViewSurface> m_surface;
     ViewOverlay* m_overlay; // a child
-    Motion m_motion = Motion::None;
-    Qt::MouseButton m_button = Qt::NoButton;
-    QPointF m_last, m_pressed;
-    bool m_moved = false;       ///< since the press, by more than a trembling hand
-    int m_gesture = 0;          // one drag is one step of the camera's history
-    QElapsedTimer m_sinceWheel; // and so are turns of the wheel that follow each other
-    int m_wheelGesture = 0;
+    CameraHand m_hand;
     QString m_reason;
     QString m_machine; ///< renderer, processors and version, for which times are kept
     bool m_expectGl = false, m_probeWaits = false;

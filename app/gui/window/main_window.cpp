@@ -11,7 +11,6 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
-#include <QPointer>
 #include <QScreen>
 #include <QSettings>
 #include <QStatusBar>
@@ -23,8 +22,8 @@
 #include "panels/probe_panel.h"
 #include "view/annotation_layer.h"
 #include "view/clip_layer.h"
+#include "view/difference_layer.h"
 #include "view/light_layer.h"
-#include "view/picture_pair.h"
 #include "view/region_layer.h"
 #include "view/saliency_layer.h"
 #include "widgets/layouts.h"
@@ -67,7 +66,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_services(std::make_unique<Services>(this)),
       m_controllers(std::make_unique<Controllers>(*m_services)),
       m_view(new VolumeView(m_services->store(), renderer, this, &m_controllers->fields)),
-      m_views(new ViewGrid(*m_services, m_controllers->fields, *m_view, this)), m_row(new QHBoxLayout) {
+      m_views(new ViewGrid(*m_services, m_controllers->fields, *m_view, m_controllers->comparing, this)),
+      m_row(new QHBoxLayout) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -77,6 +77,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     setCentralWidget(middle);
 
     m_view->overlay().add(std::make_unique<SaliencyLayer>(m_controllers->pictureSaliency, m_view->overlay()));
+    m_view->overlay().add(std::make_unique<DifferenceLayer>(m_controllers->comparing, m_view->overlay()));
     m_view->overlay().add(std::make_unique<SliceLayer>());
     addClipHandles(*m_services, *m_controllers->clipHandles, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_services, m_view->overlay()));
@@ -94,6 +95,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
         m_controllers->saving.setSeenSize({picture.width, picture.height});
         m_controllers->refining.setViewSize({picture.width, picture.height});
         m_controllers->pictureSaliency.setPictureSize({picture.width, picture.height});
+        m_controllers->comparing.setPictureSize({picture.width, picture.height});
         m_controllers->player.pictureShown(picture.volume);
         Q_EMIT settledChanged();
     });
@@ -104,13 +106,6 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     connect(&m_services->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
     connect(&m_controllers->saving, &SaveController::sessionPathChanged, this, &MainWindow::updateTitle);
     connect(&m_controllers->views, &ViewSearchController::glimpsed, m_view, &VolumeView::lookFrom);
-    connect(&m_controllers->refining, &RefineController::pairWanted, this,
-            [this, pair = QPointer<PicturePair>()]() mutable {
-                if (!pair) pair = new PicturePair(*m_services, m_controllers->refining, this);
-                pair->show();
-                pair->raise();
-                pair->activateWindow();
-            });
     updateTitle();
     resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
 }

@@ -1,0 +1,111 @@
+#include "view/camera_hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QApplication>
+#include <QMouseEvent>
+#include <QWheelEvent>
+#include <QWidget>
+
+#include "render/camera_motion.h"
+#include "store/session_store.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr double kDegreesPerView = 220; // of a drag across the height of the view
+constexpr double kZoomPerView = 12;     // factor of a right-drag across the height of the view
+constexpr double kZoomPerNotch = 1.15;  // factor of one notch of the wheel
+constexpr double kDegreesPerKey = 5;
+constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
+
+} // namespace
+
+void CameraHand::set(const std::function<Camera(const Camera&, const Geometry&)>& change, int gesture) {
+    if (const Scene* const scene = m_get()) m_set(change(scene->camera, scene->volume->geometry()), gesture);
+}
+
+void CameraHand::zoom(double factor, int gesture) {
+    set([=](const Camera& now, const Geometry& g) { return zoomed(now, g, factor); }, gesture);
+}
+
+void CameraHand::fit() { set(fitted); }
+
+bool CameraHand::press(const QMouseEvent& event) {
+    const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
+    m_motion = event.button() == Qt::LeftButton     ? (shift ? Motion::Pan : Motion::Rotate)
+               : event.button() == Qt::MiddleButton ? Motion::Pan
+               : event.button() == Qt::RightButton  ? Motion::Zoom
+                                                    : Motion::None;
+    if (m_motion == Motion::None) return false;
+    m_button = event.button();
+    m_last = m_pressed = event.position();
+    m_moved = false;
+    m_gesture = SessionStore::newGesture();
+    return true;
+}
+
+void CameraHand::move(const QMouseEvent& event) {
+    if (m_motion == Motion::None || m_get() == nullptr) return;
+    if (!m_moved && (event.position() - m_pressed).manhattanLength() < QApplication::startDragDistance() / 3) return;
+    m_moved = true;
+    const QPointF way = event.position() - m_last;
+    m_last = event.position();
+    const int height = m_view.height();
+    const double perPixel = 1.0 / std::max(1, height);
+    if (m_motion == Motion::Rotate) // the volume follows the hand, so the eye goes the other way
+        set(
+            [&](const Camera& now, const Geometry& g) {
+                return rotated(now, g, -way.x() * perPixel * kDegreesPerView, way.y() * perPixel * kDegreesPerView);
+            },
+            m_gesture);
+    if (m_motion == Motion::Pan)
+        set([&](const Camera& now, const Geometry& g) { return panned(now, g, way.x(), way.y(), height); }, m_gesture);
+    if (m_motion == Motion::Zoom) zoom(std::pow(kZoomPerView, -way.y() * perPixel), m_gesture);
+}
+
+bool CameraHand::release(const QMouseEvent& event) {
+    if (event.button() != m_button) return false;
+    const bool click = m_motion == Motion::Rotate && !m_moved && m_get() != nullptr;
+    m_motion = Motion::None;
+    return click;
+}
+
+void CameraHand::wheel(QWheelEvent& event) {
+    if (event.angleDelta().y() == 0) return event.ignore();
+    if (!m_sinceWheel.isValid() || m_sinceWheel.restart() > kWheelPause) m_wheelGesture = SessionStore::newGesture();
+    m_sinceWheel.start();
+    zoom(std::pow(kZoomPerNotch, event.angleDelta().y() / 120.0), m_wheelGesture);
+    event.accept();
+}
+
+bool CameraHand::key(int key) {
+    const auto turn = [this](double yaw, double pitch) {
+        set([=](const Camera& now, const Geometry& g) {
+            return rotated(now, g, yaw * kDegreesPerKey, pitch * kDegreesPerKey);
+        });
+        return true;
+    };
+    switch (key) {
+    case Qt::Key_Left:
+        return turn(-1, 0);
+    case Qt::Key_Right:
+        return turn(1, 0);
+    case Qt::Key_Up:
+        return turn(0, 1);
+    case Qt::Key_Down:
+        return turn(0, -1);
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+        zoom(kZoomPerNotch);
+        return true;
+    case Qt::Key_Minus:
+        zoom(1.0 / kZoomPerNotch);
+        return true;
+    default:
+        return false;
+    }
+}
+
+} // namespace pellucid::gui
