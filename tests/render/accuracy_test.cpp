@@ -76,15 +76,15 @@ TEST_CASE("in large volumes eight candidates, and derivatives, are what single s
 }
 
 TEST_CASE("in large volumes too voxels without a value hide and show nothing", "[visibility][cpu]") {
-    // A ball of 1 in 0, half of it and a shell around it missing: three values, so that codes are few and their tables
-    // have many entries for each.
-    const Int3 dims(136, 128, 130);
+    // Rods of 1 in 0, the near half of each and a shell around it missing: three values, so that codes are few and their
+    // tables have many entries for each. A slab that is seen through its thin side: the reference follows short lines.
+    const Int3 dims(12, 430, 440);
     std::vector<std::uint8_t> samples;
     for (int k = 0; k < dims.z; ++k)
         for (int j = 0; j < dims.y; ++j)
             for (int i = 0; i < dims.x; ++i) {
-                const double r = glm::length(Vec3(i - 68, j - 64, k - 65));
-                samples.push_back(static_cast<std::uint8_t>(r > 50 && r < 54 ? 255 : r < 40 ? (i < 68 ? 1 : 255) : 0));
+                const double r = glm::length(glm::dvec2(j % 110 - 55, k % 110 - 55));
+                samples.push_back(static_cast<std::uint8_t>(r > 50 && r < 54 ? 255 : r < 40 ? (i < 6 ? 255 : 1) : 0));
             }
     const auto volume = std::make_shared<const Volume>(geometryOf(dims), Samples(std::move(samples)), 255.0);
     REQUIRE(volume->size() > kLarge);
