@@ -54,14 +54,18 @@ PlotAxis scaleOf(const std::vector<ShareBar>& bars, const std::vector<Measured>&
 /// Draws charts of one size, whose upper left corner is given.
 class ChartDrawing {
 public:
-    ChartDrawing(const std::vector<ShareBar>& bars, const PlotPage& page, PlotAxis scale)
+    ChartDrawing(const std::vector<ShareBar>& bars, const std::vector<Measured>& charts, const PlotPage& page,
+                 PlotAxis scale)
         : m_bars(bars), m_page(page), m_scale(std::move(scale)), m_ticks(ticksOf(m_scale, 5)) {
+        for (const Measured& chart : charts) m_title = std::max(m_title, m_page.widthOf(chart.title));
         for (const double tick : m_ticks) m_axis = std::max(m_axis, m_page.widthOf(tickText(m_scale, tick)) + 2 * kGap);
         m_slot = m_page.widthOf(fixedText(0, kDigits)) + kGap;
         for (const ShareBar& bar : bars)
             m_slot = std::max(m_slot, std::min(m_page.widthOf(bar.name), kWidestName * m_page.fontSize) + kGap);
     }
-    double leastWidth() const { return m_axis + m_slot * static_cast<double>(m_bars.size()) + kGap; }
+    double leastWidth() const {
+        return m_axis + std::max(m_slot * static_cast<double>(m_bars.size()), m_title) + kGap;
+    }
     double height() const { return 2 * kGap + 4 * line() + kChart; }
     void setWidth(double width) {
         m_width = width;
@@ -124,7 +128,7 @@ private:
     const PlotPage& m_page;
     PlotAxis m_scale;
     std::vector<double> m_ticks;
-    double m_axis = 0, m_slot = 0, m_width = 0;
+    double m_axis = 0, m_slot = 0, m_title = 0, m_width = 0;
 };
 
 /// As many beside each other as have room, and no row with one chart less than it could have.
@@ -155,7 +159,7 @@ PlotDrawing chartsOf(const std::vector<ShareBar>& bars, const PlotPage& page) {
     drawing.width = page.width;
     const std::vector<Measured> charts = measuredOf(bars);
     if (charts.empty()) return drawing;
-    ChartDrawing chart(bars, page, scaleOf(bars, charts));
+    ChartDrawing chart(bars, charts, page, scaleOf(bars, charts));
     const std::size_t columns = columnsOf(charts.size(), page.width, chart.leastWidth());
     const double width = page.width / static_cast<double>(columns);
     chart.setWidth(width);

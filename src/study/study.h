@@ -48,7 +48,7 @@ struct Study {
     int repeats = 0;               ///< how many stimuli are shown a second time, training left out
     int pauseEvery = 20;           ///< trials between two pauses; 0: no pauses
     int seed = 1;                  ///< of the order
-    Rgb background{0.5, 0.5, 0.5}; ///< of the pictures and of the screen
+    Rgb background{128.0 / 255, 128.0 / 255, 128.0 / 255}; ///< of the pictures and of the screen: #808080, as files say
     int width = 800, height = 600; ///< pixels of the pictures
     std::vector<Stimulus> stimuli;
     std::string extraJson;

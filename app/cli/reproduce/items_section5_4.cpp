@@ -264,7 +264,7 @@ std::vector<Item> itemsOfSection5_4() {
          "VWS and 2D feature saliency over the time steps of the vortex, and steps 30 and 80, under a transfer "
          "function "
          "for the first step and one optimized for each.",
-         {kObjective, {"A", "src/saliency/feature_saliency.cpp"}},
+         {kObjective, {"A", "src/saliency/image_saliency.cpp"}},
          {kVortexSeries},
          overTime},
         {{"5.16", "5.17"},

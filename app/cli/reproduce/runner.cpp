@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <mutex>
 #include <thread>
 
 #include "base/atomic_file.h"
-#include "base/json_file.h"
 #include "base/json_value.h"
 #include "base/stopwatch.h"
 
@@ -125,7 +125,8 @@ std::optional<Reproduction> keptResult(const Item& item, const DeskSettings& set
     std::error_code ec;
     if (!fs::exists(file, ec)) return {};
     try {
-        const nlohmann::json document = readJson(file.string());
+        std::ifstream in(file); // no input of the command, which writes the file anew
+        const nlohmann::json document = nlohmann::json::parse(in);
         const JsonValue value(document, file.string());
         requireFormat(value, kFormat, kVersion, "leave it to reproduce");
         if (document.at("inputs") != nlohmann::json(inputsOf(item, settings))) return {};
