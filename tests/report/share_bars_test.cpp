@@ -67,7 +67,7 @@ TEST_CASE("bar charts tell each share by its height and to four digits (thesis f
 }
 
 TEST_CASE("bar charts stand below each other where there is no room beside", "[share_bars]") {
-    const PlotDrawing wide = chartsOf(example(), page(1000)), narrow = chartsOf(example(), page(300)),
+    const PlotDrawing wide = chartsOf(example(), page(1000)), narrow = chartsOf(example(), page(500)),
                       slim = chartsOf(example(), page(150));
     CHECK(narrow.height == Approx(2 * wide.height)); // two beside each other, not three and one
     CHECK(slim.height == Approx(4 * wide.height));
