@@ -205,11 +205,11 @@ int run(const std::vector<std::string>& arguments) {
     program.footer("Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.\n"
                    "`pellucid-cli COMMAND --help` lists a command's options.");
 
-    std::vector<Command> commands{addInfo(program),     addSamples(program),   addPresets(program), addGenerate(program),
-                                  addRender(program),   addMeasure(program),   addFields(program),  addRefine(program),
-                                  addOptimize(program), addSequence(program),  addSpace(program),   addPlot(program),
-                                  addPropose(program),  addProbe(program),     addViews(program),   addSaliencyMap(program),
-                                  addCompare(program),  addReproduce(program), addBench(program)};
+    std::vector<Command> commands{
+        addInfo(program),        addSamples(program), addPresets(program),   addGenerate(program), addRender(program),
+        addMeasure(program),     addFields(program),  addRefine(program),    addOptimize(program), addSequence(program),
+        addSpace(program),       addPlot(program),    addPropose(program),   addProbe(program),    addViews(program),
+        addSaliencyMap(program), addCompare(program), addReproduce(program), addBench(program)};
     std::ranges::move(addStudy(program), std::back_inserter(commands));
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);

@@ -40,8 +40,8 @@ enum class BenchRow {
 template <>
 inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices",
                                                      "jacobian", "optimize", "optimize-newton", "threads",
-                                                     "optimize-whole", "refine", "refine-500", "refine-1000", "refine-direct",
-                                                     "render");
+                                                     "optimize-whole", "refine", "refine-500", "refine-1000",
+                                                     "refine-direct", "render");
 
 /// One line of the table.
 struct BenchResult {

@@ -76,7 +76,8 @@ struct Reproduction {
     std::size_t holding() const; ///< how many of the statements hold
 };
 
-/// "3.4, 3.5" → "Figures 3.4 and 3.5"; "A.1, A.2, A.3" → "Figures A.1 to A.3"; "table-3.2" → "Table 3.2"; "section-5.4.2" → "Section 5.4.2".
+/// "3.4, 3.5" → "Figures 3.4 and 3.5"; "A.1, A.2, A.3" → "Figures A.1 to A.3"; "table-3.2" → "Table 3.2";
+/// "section-5.4.2" → "Section 5.4.2".
 std::string headingOf(const Reproduction& item);
 /// The one command that does the item again.
 std::string commandOf(const Reproduction& item);

@@ -63,9 +63,7 @@ public:
         for (const ShareBar& bar : bars)
             m_slot = std::max(m_slot, std::min(m_page.widthOf(bar.name), kWidestName * m_page.fontSize) + kGap);
     }
-    double leastWidth() const {
-        return m_axis + std::max(m_slot * static_cast<double>(m_bars.size()), m_title) + kGap;
-    }
+    double leastWidth() const { return m_axis + std::max(m_slot * static_cast<double>(m_bars.size()), m_title) + kGap; }
     double height() const { return 2 * kGap + 4 * line() + kChart; }
     void setWidth(double width) {
         m_width = width;

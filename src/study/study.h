@@ -45,11 +45,11 @@ struct Study {
     std::string question = "How clear and distinct is the {feature} feature?"; ///< {feature}: Stimulus::word()
     std::map<int, std::string> labels{{1, "Not at all"}, {3, "Neutral"}, {5, "Very clear"}}; ///< of scores 1 to 5
     double taskSeconds = 3, imageSeconds = 17;
-    int repeats = 0;               ///< how many stimuli are shown a second time, training left out
-    int pauseEvery = 20;           ///< trials between two pauses; 0: no pauses
-    int seed = 1;                  ///< of the order
+    int repeats = 0;     ///< how many stimuli are shown a second time, training left out
+    int pauseEvery = 20; ///< trials between two pauses; 0: no pauses
+    int seed = 1;        ///< of the order
     Rgb background{128.0 / 255, 128.0 / 255, 128.0 / 255}; ///< of the pictures and of the screen: #808080, as files say
-    int width = 800, height = 600; ///< pixels of the pictures
+    int width = 800, height = 600;                         ///< pixels of the pictures
     std::vector<Stimulus> stimuli;
     std::string extraJson;
 

@@ -66,8 +66,8 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
     }
     CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
-                                         "optimize-newton", "threads", "optimize-whole", "refine", "refine-500", "refine-1000",
-                                         "refine-direct", "render"});
+                                         "optimize-newton", "threads", "optimize-whole", "refine", "refine-500",
+                                         "refine-1000", "refine-direct", "render"});
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
     const auto sweeps = rowsNamed(j, "sweep");
@@ -153,7 +153,8 @@ TEST_CASE("bench searches with more and more threads, and finds the same", "[cli
 
 TEST_CASE("bench refines after a click 500 times, fast and by integrating every edge anew", "[cli][bench]") {
     const Workshop w;
-    const json j = bench(w, {"--only", "refine-500,refine-1000,refine-direct,render", "--tf", "tents:3", "--threads", "2"});
+    const json j =
+        bench(w, {"--only", "refine-500,refine-1000,refine-direct,render", "--tf", "tents:3", "--threads", "2"});
     REQUIRE(j["rows"].size() == 4);
     const json &fast = j["rows"][0], &longer = j["rows"][1], &direct = j["rows"][2], &render = j["rows"][3];
     CHECK(fast["name"] == "refine-500");

@@ -21,10 +21,10 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",   "samples", "presets",  "generate",     "render",  "measure",
-                                         "fields", "propose", "refine",   "optimize",     "probe",   "views",
-                                         "space",  "bench",   "sequence", "saliency-map", "compare", "plot",
-                                         "reproduce", "study"};
+const std::vector<std::string> kCommands{"info",         "samples", "presets", "generate",  "render",
+                                         "measure",      "fields",  "propose", "refine",    "optimize",
+                                         "probe",        "views",   "space",   "bench",     "sequence",
+                                         "saliency-map", "compare", "plot",    "reproduce", "study"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
 

@@ -52,7 +52,8 @@ TEST_CASE("every row sets its setting within its range, and undo takes it back",
             w.document().undo();
             if (id.startsWith("compare")) { // how states are compared is no step, as the camera is none
                 CHECK(textOf(*setting, group->present()) != before);
-                for (int turns = 0; turns < 4 && textOf(*setting, group->present()) != before; ++turns) change(*control);
+                for (int turns = 0; turns < 4 && textOf(*setting, group->present()) != before; ++turns)
+                    change(*control);
                 continue;
             }
             CHECK(textOf(*setting, group->present()) == before);

@@ -76,8 +76,9 @@ TEST_CASE("in large volumes eight candidates, and derivatives, are what single s
 }
 
 TEST_CASE("in large volumes too voxels without a value hide and show nothing", "[visibility][cpu]") {
-    // Rods of 1 in 0, the near half of each and a shell around it missing: three values, so that codes are few and their
-    // tables have many entries for each. A slab that is seen through its thin side: the reference follows short lines.
+    // Rods of 1 in 0, the near half of each and a shell around it missing: three values, so that codes are few and
+    // their tables have many entries for each. A slab that is seen through its thin side: the reference follows short
+    // lines.
     const Int3 dims(12, 430, 440);
     std::vector<std::uint8_t> samples;
     for (int k = 0; k < dims.z; ++k)

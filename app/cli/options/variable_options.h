@@ -30,8 +30,9 @@ private:
 };
 
 /// Adds "features_of": "volatility:x:10" where features are of a variable that is made of another one, "hsb":
-/// {"alpha":"x","saturation":"volatility:x:10","a":12.5,…}, with the scales that were used, and what derived variables are
-/// by definition ("definitions") to the result of a command; nothing where colours are those of the transfer function.
+/// {"alpha":"x","saturation":"volatility:x:10","a":12.5,…}, with the scales that were used, and what derived variables
+/// are by definition ("definitions") to the result of a command; nothing where colours are those of the transfer
+/// function.
 void addMapping(Json& result, const Scene& scene);
 /// How a derived variable is named and what its values are: {"volatility:x:10":"population standard deviation of …"}.
 Json definitionsOf(const Session& session);

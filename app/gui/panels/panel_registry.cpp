@@ -11,22 +11,10 @@ Panel transferFunctionPanel, playerPanel, featuresPanel, refinePanel, influenceP
 std::vector<PanelInfo> panelRegistry() {
     return {transferFunctionPanel(),
             playerPanel(), // below the one before it, which has no tabs yet: else it would become a tab, too
-            featuresPanel(),
-            refinePanel(),
-            influencePanel(),
-            convergencePanel(),
-            displayPanel(),
-            lightPanel(),
-            clipPanel(),
-            fieldsPanel(),
-            pictureSaliencyPanel(),
-            comparePanel(),
-            galleryPanel(),
-            viewsPanel(),
-            settingsPanel(),
-            spacePanel(),
-            variablesPanel(),
-            temporalPanel()};
+            featuresPanel(),         refinePanel(),  influencePanel(), convergencePanel(),
+            displayPanel(),          lightPanel(),   clipPanel(),      fieldsPanel(),
+            pictureSaliencyPanel(),  comparePanel(), galleryPanel(),   viewsPanel(),
+            settingsPanel(),         spacePanel(),   variablesPanel(), temporalPanel()};
 }
 
 } // namespace pellucid::gui

@@ -22,8 +22,8 @@ constexpr double kLeast = 0.12; // of the area, for each row and column
 
 } // namespace
 
-ViewGrid::ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, ComparisonController& comparing,
-                   QWidget* parent)
+ViewGrid::ViewGrid(Services& services, const FieldController& fields, VolumeView& volume,
+                   ComparisonController& comparing, QWidget* parent)
     : QWidget(parent), m_services(services), m_volume(volume), m_comparing(comparing),
       m_bar(new SliceBar(services, this)) {
     setObjectName("viewGrid");
