@@ -79,7 +79,7 @@ TEST_CASE("a study that says little is as the thesis had it", "[study]") {
     CHECK(study.taskSeconds == 3); // §4.5.2
     CHECK(study.imageSeconds == 17);
     CHECK(study.repeats == 0);
-    CHECK(study.background == Rgb{0.5, 0.5, 0.5});
+    CHECK(study.background == Rgb{128.0 / 255, 128.0 / 255, 128.0 / 255});
     CHECK(study.labels.at(3) == "Neutral"); // appendix B
     CHECK(study.questionOf(study.stimuli[1]) == "How clear and distinct is the f2 feature?");
 }
