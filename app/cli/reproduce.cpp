@@ -107,10 +107,17 @@ std::optional<Error> failureOf(const std::vector<ItemOutcome>& outcomes) {
                  first, "run the same command again once that is mended");
 }
 
-Answer run(const Options& o, Progress& progress) {
+/// What was given for this program as a whole, and holds for those that it starts.
+void takeCommonOptions(const CLI::App& app, DeskSettings& settings) {
+    for (const char* name : {"--threads", "--memory"})
+        for (const std::string& value : app.get_option(name)->results()) settings.common.emplace_back(name, value);
+}
+
+Answer run(const Options& o, const CLI::App& app, Progress& progress) {
     const Stopwatch total;
     const std::vector<Item> chosen = itemsShowing(o.names);
     DeskSettings settings = settingsOf(o);
+    takeCommonOptions(app, settings);
     if (o.list) return listed(chosen, settings);
     if (!o.out) throw isRequired("--out", "reproduce");
     addOutputFile(*o.out, kPageFile, "--out");
@@ -157,7 +164,7 @@ Command addReproduce(CLI::App& program) {
     addOutputFile(*app, "--index", o->index,
                   "also write what was found as Markdown: equations, files, commands, results");
     app->add_flag("--list", o->list, "only list the items");
-    return {app, [o](Progress& progress) { return run(*o, progress); }};
+    return {app, [o, app](Progress& progress) { return run(*o, *app, progress); }};
 }
 
 } // namespace pellucid::cli

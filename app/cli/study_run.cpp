@@ -1,21 +1,15 @@
 // `study run`: opens the window that shows a study to one participant.
-#include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <thread>
 
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include "child_program.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "parse.h"
 #include "study/participation.h"
 #include "study_simulate.h"
-
-extern char** environ; // NOLINT: POSIX
 
 namespace pellucid::cli {
 
@@ -54,37 +48,6 @@ void requireDisplay() {
                 "run it on a desktop");
 }
 
-/// Runs it until it ends; its exit status, −1 where a signal ended it. Throws Cancelled after Ctrl-C, which ends it.
-int runWindow(const std::vector<std::string>& words) {
-    std::vector<char*> argv;
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_adddup2(&files, STDERR_FILENO, STDOUT_FILENO); // our stdout is for the answer
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none); // ours blocks what ends it
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-    pid_t child = 0;
-    const int failed = posix_spawn(&child, words.front().c_str(), &files, &attributes, argv.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    posix_spawnattr_destroy(&attributes);
-    if (failed != 0) throw Error("the window program cannot be started", words.front(), "check its installation");
-    int status = 0;
-    while (waitpid(child, &status, WNOHANG) == 0) {
-        if (interruptToken().stop_requested()) {
-            kill(child, SIGTERM);
-            waitpid(child, &status, 0);
-            throw Cancelled{};
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 Answer run(const Options& o, Progress& progress) {
     o.simulate.check();
     refuse({{o.simulate.isWanted() && o.participant, "simulated participants have ids of their own", "--participant",
@@ -94,7 +57,8 @@ Answer run(const Options& o, Progress& progress) {
     const std::string id = o.participant.value_or(newParticipantId(o.folder));
     const std::string program = windowProgram();
     requireDisplay();
-    const int status = runWindow({program, "--study", o.folder, "--participant", id});
+    const ChildEnd end = runChild(
+        {.program = program, .words = {"--study", o.folder, "--participant", id}, .talks = true}, interruptToken());
     const std::string file = participantFile(o.folder, id);
     std::error_code ec;
     const std::size_t answers = fs::exists(file, ec) ? readParticipant(file).answers.size() : 0;
@@ -106,7 +70,7 @@ Answer run(const Options& o, Progress& progress) {
     if (answers > 0) text += "answers are in " + file + "\n";
     if (answers > 0 && answers < trials) text += "to go on: study run " + o.folder + " --participant " + id + "\n";
     Answer answer{std::move(text), std::move(json)};
-    if (status != 0) answer.failure = Error("the window ended with an error", program, "see what it says above");
+    if (end.status != 0) answer.failure = Error("the window ended with an error", program, "see what it says above");
     return answer;
 }
 

@@ -51,11 +51,14 @@ void GrowingFile::cut(std::uint64_t size) {
 }
 
 void GrowingFile::append(std::string_view text) {
+    if (m_isTorn) cut(m_size);
+    m_isTorn = true;
     try {
         writeAll(m_descriptor, text.data(), text.size(), m_path);
         flushToDisk(m_descriptor, m_path);
+        m_isTorn = false;
     } catch (...) {
-        static_cast<void>(::ftruncate(m_descriptor, static_cast<off_t>(m_size)) == 0); // no torn piece, if it can be
+        m_isTorn = ::ftruncate(m_descriptor, static_cast<off_t>(m_size)) != 0;
         throw;
     }
     m_size += text.size();

@@ -27,7 +27,8 @@ public:
 private:
     std::string m_path;
     int m_descriptor;
-    std::uint64_t m_size = 0;
+    std::uint64_t m_size = 0; ///< of whole pieces
+    bool m_isTorn = false;    ///< a piece of which a part may lie behind them, to be cut before the next
 };
 
 } // namespace pellucid

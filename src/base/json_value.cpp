@@ -93,7 +93,7 @@ Rgb JsonValue::color() const {
     }
 }
 
-std::string JsonValue::unknownKeys(std::initializer_list<const char*> known) const {
+std::string JsonValue::unknownKeys(const std::vector<const char*>& known) const {
     nlohmann::json rest = nlohmann::json::object();
     for (const auto& [key, value] : m_json->items())
         if (std::none_of(known.begin(), known.end(), [k = &key](const char* name) { return *k == name; }))

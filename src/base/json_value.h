@@ -43,7 +43,7 @@ public:
     Rgb color() const; ///< "#rrggbb", or [r,g,b] with components in [0,1]
 
     /// What the object has besides `known`, as one JSON object in text; empty where that is nothing.
-    std::string unknownKeys(std::initializer_list<const char*> known) const;
+    std::string unknownKeys(const std::vector<const char*>& known) const;
 
 private:
     JsonValue(const nlohmann::json& json, std::string file, std::string pointer)

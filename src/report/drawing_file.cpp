@@ -1,12 +1,11 @@
 #include "report/drawing_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <span>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "image_io/image_file.h"
 #include "report/image_plot.h"
 #include "report/svg_plot.h"
@@ -15,11 +14,7 @@ namespace pellucid {
 
 namespace {
 
-std::string suffixOf(const std::string& path) {
-    std::string suffix = std::filesystem::path(path).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-    return suffix;
-}
+std::string suffixOf(const std::string& path) { return lowerCase(std::filesystem::path(path).extension().string()); }
 
 } // namespace
 

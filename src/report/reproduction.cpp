@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -32,6 +33,12 @@ ReproducedTable readTable(const JsonValue& t) {
         for (const JsonValue& cell : row.items(table.head.size())) table.rows.back().push_back(cell.text());
     }
     return table;
+}
+
+/// JSON has no NaN: it is written as null.
+double figureAt(const JsonValue& object, const char* key) {
+    const JsonValue value = object[key];
+    return value.json().is_null() ? std::numeric_limits<double>::quiet_NaN() : value.number();
 }
 
 /// "4.7", "4.8", "4.9"
@@ -133,7 +140,7 @@ Reproduction reproductionFromJson(const nlohmann::json& document, const std::str
         return ReproducedPicture{p["file"].text(), p["figure"].text(), p["caption"].text()};
     });
     item.numbers = listOf(json, "numbers", [](const JsonValue& n) {
-        return ReproducedNumber{n["what"].text(), n["ours"].number(), n["thesis"].number(), n["unit"].text()};
+        return ReproducedNumber{n["what"].text(), figureAt(n, "ours"), figureAt(n, "thesis"), n["unit"].text()};
     });
     item.tables = listOf(json, "tables", readTable);
     item.statements = listOf(json, "statements", [](const JsonValue& s) {

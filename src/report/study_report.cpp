@@ -233,7 +233,7 @@ std::string methodsPart(const StudyAnalysis& analysis) {
 ReportPicture smallPicture(const Stimulus& stimulus, std::vector<std::string>& remarks) {
     try {
         return encoded(reduced(readImage(stimulus.picture), kWidthOfPictures));
-    } catch (const FileError& e) {
+    } catch (const Error& e) {
         remarks.push_back("The picture of " + stimulus.id + " cannot be shown: " + e.problem() + ".");
         return {};
     }

@@ -71,14 +71,16 @@ ComparedSide comparedSide(const SideInput& input, const Measures& measures, Imag
 }
 
 std::vector<FeaturePair> pairsOf(const std::vector<FeatureFigures>& a, const std::vector<FeatureFigures>& b) {
-    const auto named = [](const std::vector<FeatureFigures>& in, const std::string& name) {
-        const auto at = std::ranges::find(in, name, &FeatureFigures::name);
-        return at == in.end() ? std::optional<FeatureFigures>() : *at;
-    };
     std::vector<FeaturePair> pairs;
-    for (const FeatureFigures& f : a) pairs.push_back({f.name, f, named(b, f.name)});
-    for (const FeatureFigures& f : b)
-        if (!named(a, f.name)) pairs.push_back({f.name, {}, f});
+    for (const FeatureFigures& f : a) pairs.push_back({f.name, f, {}});
+    for (const FeatureFigures& f : b) {
+        // Of features of one name, the first belongs to the first.
+        const auto pair = std::ranges::find_if(pairs, [&](const FeaturePair& p) { return p.name == f.name && !p.b; });
+        if (pair != pairs.end())
+            pair->b = f;
+        else
+            pairs.push_back({f.name, {}, f});
+    }
     return pairs;
 }
 

@@ -56,7 +56,7 @@ struct FeaturePair {
     /// On every side that has it.
     bool isEmpty() const { return (!a || a->empty) && (!b || b->empty); }
 };
-/// Those of `a` in their order, then what `b` alone has.
+/// By name, the first of a name with the first: those of `a` in their order, then what `b` alone has.
 std::vector<FeaturePair> pairsOf(const std::vector<FeatureFigures>& a, const std::vector<FeatureFigures>& b);
 
 /// The figures of features, as they are listed.

@@ -246,9 +246,11 @@ std::string featuresOf(const Session& session, const std::string& text) {
     if (session.variableNamed(text) != nullptr) return text;
     const std::string of = ":" + dataVariable(session).name;
     if (text == "gradient") return text + of;
-    for (const std::string kind : {"volatility:", "difference:"})
-        if (text.starts_with(kind) && text.find(':', kind.size()) == std::string::npos)
+    for (const std::string kind : {"volatility:", "difference:"}) {
+        std::int64_t number = 0;
+        if (text.starts_with(kind) && parseNumber(text.substr(kind.size()), number))
             return text.substr(0, kind.size() - 1) + of + ":" + text.substr(kind.size());
+    }
     return text;
 }
 

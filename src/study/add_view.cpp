@@ -34,7 +34,10 @@ Study addViewToStudy(const std::string& studyPath, const Session& session, const
         ids.stimuli.push_back(stimulus);
         stimulus.session = fileOf(stimulus.id);
     } while (fs::exists(stimulus.session, ec));
-    writeSession(session, stimulus.session);
+    Session shown = session; // what else the window had at hand is no part of a stimulus
+    shown.comparison = {};
+    shown.runs = {};
+    writeSession(shown, stimulus.session);
     study.stimuli.push_back(std::move(stimulus));
     writeStudy(study, studyPath);
     return study;

@@ -85,8 +85,9 @@ IntraclassCorrelation intraclassCorrelation(const ScoreTable& table) {
     for (const Scores& row : scores) {
         all.insert(all.end(), row.begin(), row.end());
         ofThings.push_back(meanOfAll(row));
-        for (std::size_t r = 0; r < row.size(); ++r) ofRaters[r] += row[r] / n;
+        for (std::size_t r = 0; r < row.size(); ++r) ofRaters[r] += row[r];
     }
+    for (double& mean : ofRaters) mean /= n; // once: where all scores are equal, so are these, to the bit
     // Mean squares between things, between raters, and of what is left.
     const double mean = meanOfAll(all), things = k * squaresAround(mean, ofThings),
                  raters = n * squaresAround(mean, ofRaters);

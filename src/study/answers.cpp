@@ -93,6 +93,11 @@ std::array<std::size_t, kColumns.size()> placesOf(const std::vector<std::string>
     return places;
 }
 
+/// A line whose end is missing: its last column, the time in UTC, has a last sign of its own.
+bool isWhole(const std::vector<std::string>& fields) {
+    return fields.size() == kColumns.size() && fields.back().ends_with('Z');
+}
+
 double tenths(double ms) { return std::round(ms * 10) / 10; }
 
 } // namespace
@@ -116,7 +121,14 @@ std::string lineOf(const Participant& participant, const Answer& a) {
 AnswersRead answersFrom(const std::string& text, const std::string& path) {
     AnswersRead read;
     read.participant.id = fs::path(path).stem().string();
-    const CsvRecords csv = readCsv(text);
+    CsvRecords csv = readCsv(text);
+    if (csv.wholeBytes < text.size()) {
+        CsvRecords ended = readCsv(text + "\n");
+        if (ended.records.size() == csv.records.size() + 1 && isWhole(ended.records.back())) {
+            csv = {std::move(ended.records), text.size()};
+            read.lacksLineEnd = true;
+        }
+    }
     read.wholeBytes = csv.wholeBytes;
     if (csv.records.empty()) return read;
     const auto places = placesOf(csv.records.front(), path);

@@ -43,6 +43,7 @@ std::string lineOf(const Participant& participant, const Answer& answer);
 struct AnswersRead {
     Participant participant;
     std::size_t wholeBytes = 0; ///< of whole lines: what is behind was being written when the program ended
+    bool lacksLineEnd = false;  ///< the last one is whole, but an editor has taken the end of its line
 };
 /// `text` of the file `path`, ID.csv. Throws Error with the line that is wrong.
 AnswersRead answersFrom(const std::string& text, const std::string& path);

@@ -49,6 +49,7 @@ void Participation::readEarlier(const std::string& path) {
         m_isAnswered[index] = true;
     }
     if (read.wholeBytes < m_file->size()) m_file->cut(read.wholeBytes);
+    if (read.lacksLineEnd) m_file->append("\n");
     m_participant = std::move(read.participant);
 }
 

@@ -131,6 +131,8 @@ PreparedStudy prepareStudy(const Study& study, const std::string& folder, std::o
         s.picture = (fs::path(picturesFolder(folder)) / (s.id + ".png")).string();
     }
     makeFolder(picturesFolder(folder));
+    std::error_code ec; // until the new figures are there, those of an older study are not those of the pictures
+    fs::remove(preparedStudyFile(folder), ec);
     for (std::size_t i = 0; i < pictures.size(); ++i)
         writeBytesAtomically(prepared.study.stimuli[i].picture, pictures[i]);
     writeStudy(prepared.study, preparedStudyFile(folder));

@@ -141,9 +141,9 @@ Study studyFrom(const JsonValue& document, const std::string& folder) {
     for (const JsonValue& j : stimuli.items()) study.stimuli.push_back(stimulusFrom(j, folder));
     requireOwnIds(stimuli, study);
     requireRepeatable(document, study);
-    study.extraJson = document.unknownKeys({"format", "version", "title", "consent", "instructions", "question",
-                                            "labels", "task_seconds", "image_seconds", "repeats", "pause_every", "seed",
-                                            "background", "size", "stimuli"});
+    std::vector<const char*> known{"format", "version", "labels", "size", "stimuli"};
+    for (const Setting& setting : settingsOf<Study>()) known.push_back(setting.key);
+    study.extraJson = document.unknownKeys(known);
     return study;
 }
 

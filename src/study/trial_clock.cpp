@@ -30,6 +30,10 @@ bool TrialClock::advance(double nowMs) {
     return true;
 }
 
+void TrialClock::leaveOut(double ms) {
+    if (m_seen) *m_seen += ms;
+}
+
 TrialTimes TrialClock::answered(double nowMs) const {
     PELLUCID_CHECK(m_screen == Screen::Question && m_seen);
     TrialTimes times = m_times;

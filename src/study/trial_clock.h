@@ -28,6 +28,8 @@ public:
     std::optional<double> remaining(double nowMs) const;
     /// Goes on to the next screen where it is due, and says whether it did.
     bool advance(double nowMs);
+    /// So long of the time since the present screen could be seen does not count: something else covered it.
+    void leaveOut(double ms);
     /// Of the trial, answered now: the question has been seen.
     TrialTimes answered(double nowMs) const;
 

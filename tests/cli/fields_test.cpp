@@ -25,19 +25,23 @@ Volume readVolume(const std::filesystem::path& path) {
     return loadVolume(source);
 }
 
-} // namespace
-
-TEST_CASE("the visibility of a homogeneous slab falls as α(1 − α)^k", "[cli][fields]") {
-    const Workshop w;
-    // 6 × 5 × 6 voxels whose values differ along x alone, α = 0.3 for all of them, seen along y: plane k from the eye
-    // has v = 0.3 · 0.7^k (docs/method.md, "Visibility").
+/// slab.raw: 6 × 5 × 6 bytes whose values differ along x alone; and flat.tf.json, α = 0.3 for all of them, one feature.
+void writeSlab(const Workshop& w, const std::string& feature) {
     std::string values;
     for (int i = 0; i < 6 * 5 * 6; ++i) values += static_cast<char>(100 + i % 6);
     w.write("slab.raw", values);
     w.write("flat.tf.json",
             R"({"format":"pellucid-tf","version":1,"range":[0,200],"points":[{"x":0,"opacity":0.3,"color":"#ffffff"},
-                {"x":1,"opacity":0.3,"color":"#ffffff"}],"features":[{"name":"all/of: it","range":[0,1],
-                "color":"#ffffff"}]})");
+                {"x":1,"opacity":0.3,"color":"#ffffff"}],"features":[{"name":")" +
+                feature + R"(","range":[0,1],"color":"#ffffff"}]})");
+}
+
+} // namespace
+
+TEST_CASE("the visibility of a homogeneous slab falls as α(1 − α)^k", "[cli][fields]") {
+    const Workshop w;
+    // Seen along y: plane k from the eye has v = 0.3 · 0.7^k (docs/method.md, "Visibility").
+    writeSlab(w, "all/of: it");
     w.json({"fields", "slab.raw", "--raw", "6,5,6,u8", "--tf", "flat.tf.json", "--view", "0,0", "--orthographic",
             "--engine", "cpu", "--feature", "all", "--out", "f"});
     for (const char* file : {"f/visibility.nrrd", "f/visibility_all_of__it.nrrd"}) {
@@ -53,12 +57,7 @@ TEST_CASE("the visibility of a homogeneous slab falls as α(1 − α)^k", "[cli]
 TEST_CASE("a slice of a field has the field's values through its colour map", "[cli][fields]") {
     const Workshop w;
     // The slab above, across z: pixel (x, y) of 6 × 5 is voxel (x, 4 − y, 2), the eye is at the bottom. v = 0.3·0.7^k.
-    std::string values;
-    for (int i = 0; i < 6 * 5 * 6; ++i) values += static_cast<char>(100 + i % 6);
-    w.write("slab.raw", values);
-    w.write("flat.tf.json",
-            R"({"format":"pellucid-tf","version":1,"range":[0,200],"points":[{"x":0,"opacity":0.3,"color":"#ffffff"},
-                {"x":1,"opacity":0.3,"color":"#ffffff"}],"features":[{"name":"all","range":[0,1],"color":"#ffffff"}]})");
+    writeSlab(w, "all");
     const Words large{"render", "slab.raw",  "--raw",          "6,5,6,u8", "--tf", "flat.tf.json",
                       "--view", "0,0",       "--orthographic", "--engine", "cpu",  "--slice",
                       "z:0.42", "--nearest", "--field-top",    "0.3"};

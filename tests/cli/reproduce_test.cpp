@@ -84,6 +84,29 @@ TEST_CASE("what is there is not done again until something changes", "[cli][repr
     CHECK(itemOf(w.json({"reproduce", "4.2", "--out", "thesis", "--sample-size", "20"}), "4.2")["reused"] == true);
 }
 
+TEST_CASE("other values behind the same header are other data", "[cli][reproduce]") {
+    const Workshop w;
+    std::filesystem::create_directories(w.path("real/tooth"));
+    std::string values(16 * 16 * 16, '\0');
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<char>(i / 16);
+    w.write("real/tooth/tooth.mhd", "NDims = 3\nDimSize = 16 16 16\nElementType = MET_UCHAR\n"
+                                    "ElementSpacing = 1 1 1\nElementDataFile = tooth.raw\n");
+    w.write("real/tooth/tooth.raw", values);
+    const Words command = Words{"reproduce", "4.18", "--data", "real", "--out", "thesis"} + kTiny;
+    CHECK(itemOf(w.json(command), "4.18")["reused"] == false);
+    CHECK(itemOf(w.json(command), "4.18")["reused"] == true);
+    std::ranges::reverse(values);
+    w.write("real/tooth/tooth.raw", values);
+    CHECK(itemOf(w.json(command), "4.18")["reused"] == false);
+}
+
+TEST_CASE("threads and memory are those of the commands, too", "[cli][reproduce]") {
+    const Workshop w;
+    const Words command = Words{"reproduce", "4.2", "--threads", "1", "--memory", "2", "--out", "thesis"} + kTiny;
+    for (const json& ran : itemOf(w.json(command), "4.2")["commands"])
+        CHECK(ran["line"].get<std::string>().ends_with(" --threads 1 --memory 2"));
+}
+
 TEST_CASE("an item that fails is told, and the others go on", "[cli][reproduce]") {
     const Workshop w;
     std::filesystem::create_directories(w.path("real/tooth"));

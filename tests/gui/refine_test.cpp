@@ -332,6 +332,25 @@ TEST_CASE("live refinement follows an edit, spares what the hand holds, and goes
     CHECK(w.document().tf().points[1] == opened.points[1]);
 }
 
+TEST_CASE("live refinement for a hue brings out what has it after the edit", "[refine]") {
+    OpenWindow w;
+    w.services().store().edit("Favour yellow", {}, [](Session& session) {
+        session.refine.edit([](RefineSettings& r) {
+            r.hue = 60; // of the first tent, around 1/6
+            r.live = true;
+        });
+    });
+    const auto favoured = [&] { return w.refining().latest()->options.priority.intensity; };
+    REQUIRE(favoured());
+    CHECK(*favoured() < 1.0 / 3);
+    w.services().store().edit("Swap colours", {}, [](Session& session) {
+        TransferFunction tf = *session.tf();
+        for (std::size_t i = 0; i < 3; ++i) std::swap(tf.points[i].color, tf.points[i + 6].color);
+        session.setTf(tf);
+    });
+    CHECK(*favoured() > 2.0 / 3);
+}
+
 TEST_CASE("an optimization is not refined, however live refinement is", "[refine]") {
     OpenWindow w;
     w.child<QCheckBox>("liveRefineCheck").click();

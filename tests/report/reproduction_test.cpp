@@ -1,6 +1,9 @@
 // What `reproduce` keeps and shows of a figure.
 #include "report/reproduction.h"
 
+#include <cmath>
+#include <limits>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -39,6 +42,10 @@ TEST_CASE("a reproduction is read back as it was", "[report][reproduce]") {
     r.error = "it failed";
     const nlohmann::json json = nlohmann::json::parse(jsonFromReproduction(r).dump());
     CHECK(reproductionFromJson(json, "item.json") == r);
+
+    r.numbers[0].ours = std::numeric_limits<double>::quiet_NaN();
+    const auto unknown = nlohmann::json::parse(jsonFromReproduction(r).dump());
+    CHECK(std::isnan(reproductionFromJson(unknown, "item.json").numbers[0].ours));
 
     nlohmann::json wrong = json;
     wrong["statements"][1]["holds"] = "yes";

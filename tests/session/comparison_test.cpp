@@ -79,6 +79,17 @@ TEST_CASE("features are paired by their names", "[comparison]") {
     CHECK_FALSE(pairs[2].a);
 }
 
+TEST_CASE("of features of one name, the first belongs to the first", "[comparison]") {
+    const auto pairs = pairsOf({figures("bone", 0.1), figures("bone", 0.2)},
+                               {figures("bone", 0.3), figures("bone", 0.4), figures("bone", 0.5)});
+    REQUIRE(pairs.size() == 3);
+    CHECK(pairs[0].b->vws == 0.3);
+    CHECK(pairs[1].a->vws == 0.2);
+    CHECK(pairs[1].b->vws == 0.4);
+    CHECK_FALSE(pairs[2].a);
+    CHECK(pairs[2].b->vws == 0.5);
+}
+
 TEST_CASE("equal states differ in nothing, and figures are those that are measured", "[comparison]") {
     const Scene scene = sceneOf("tents:3:0.1");
     const SideInput input = sideInput(scene, pictureInput(scene, 32, 24), true);

@@ -108,6 +108,7 @@ TEST_CASE("what features may be of is told in short and in full", "[variables]")
     CHECK(featuresOf(s, "volatility:10") == "volatility:cloud:10");
     CHECK(featuresOf(s, "difference:0") == "difference:cloud:0");
     CHECK(featuresOf(s, "volatility:rain:4") == "volatility:rain:4");
+    CHECK(featuresOf(s, "volatility:rain") == "volatility:rain"); // no number: told as it was typed
     CHECK(featuresOf(s, "rain") == "rain");
     addVariable(s, plain("gradient"));
     CHECK(featuresOf(s, "gradient") == "gradient"); // somebody has called one so

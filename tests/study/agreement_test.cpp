@@ -42,6 +42,7 @@ TEST_CASE("intraclass correlations of plain tables", "[study]") {
     CHECK(std::isnan(intraclassCorrelation({{1}, {2}}).single));
     CHECK(std::isnan(intraclassCorrelation({{1, 2}}).single));
     CHECK(std::isnan(intraclassCorrelation({{2, 2}, {2, 2}}).single));
+    CHECK(std::isnan(intraclassCorrelation(ScoreTable(10, {3, 3, 3})).mean)); // ten times 3/10 is not 3
     CHECK(std::isnan(intraclassCorrelation({{2, kGap}, {kGap, 3}, {1, 4}}).single));
     CHECK(std::isnan(intraclassCorrelation({}).single));
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 
 #include <catch2/catch.hpp>
@@ -66,10 +67,12 @@ TEST_CASE("a file that ends anywhere has all answers whose lines are whole", "[s
     for (std::size_t bytes = 0; bytes <= text.size(); ++bytes) {
         INFO(bytes);
         const AnswersRead read = answersFrom(text.substr(0, bytes), "folder/p1.csv");
-        const std::size_t whole = bytes == text.size() ? 2 : bytes >= head.size() + one.size() ? 1 : 0;
+        // A line is whole when its last sign is there; that its end is missing is told.
+        const std::size_t ends[] = {head.size(), head.size() + one.size(), text.size()};
+        const std::size_t whole = bytes >= ends[2] - 1 ? 2 : bytes >= ends[1] - 1 ? 1 : 0;
         CHECK(read.participant.answers.size() == whole);
-        CHECK(read.wholeBytes ==
-              (bytes < head.size() ? 0 : head.size() + (whole > 0 ? one.size() : 0) + (whole > 1 ? two.size() : 0)));
+        CHECK(read.wholeBytes == (bytes < head.size() ? 0 : std::min(ends[whole], bytes)));
+        CHECK(read.lacksLineEnd == (bytes == ends[1] - 1 || bytes == ends[2] - 1));
     }
 }
 

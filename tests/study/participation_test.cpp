@@ -82,10 +82,13 @@ TEST_CASE("wherever the last line is torn, the answers before it stay and the re
         }
         whole = readText(file);
     }
-    for (std::size_t bytes = 0; bytes <= whole.size(); bytes += 7) {
+    std::vector<std::size_t> sizes;
+    for (std::size_t bytes = 0; bytes <= whole.size(); bytes += 7) sizes.push_back(bytes);
+    for (const std::size_t end : ends) sizes.push_back(end - 1); // the line is whole, but for its end
+    for (const std::size_t bytes : sizes) {
         writeTextAtomically(file, whole.substr(0, bytes));
         const auto kept =
-            static_cast<std::size_t>(std::ranges::count_if(ends, [&](std::size_t end) { return end <= bytes; }));
+            static_cast<std::size_t>(std::ranges::count_if(ends, [&](std::size_t end) { return end <= bytes + 1; }));
         INFO(bytes);
         Participation person(folder.path(""), "p1");
         CHECK(person.next() == kept);

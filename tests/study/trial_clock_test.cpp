@@ -31,6 +31,17 @@ TEST_CASE("each screen is due so long after the one before could be seen", "[stu
     CHECK(times.responseMs == 2500); // 22615 − 20115
 }
 
+TEST_CASE("what covered the question does not count as time to answer", "[study]") {
+    TrialClock clock(0, 100);
+    clock.leaveOut(50); // nothing is seen yet: nothing to leave out
+    clock.seen(10);
+    REQUIRE(clock.advance(110));
+    clock.seen(115);
+    clock.leaveOut(60000);
+    CHECK(clock.answered(60515).responseMs == 400); // 60515 − 115 − 60000
+    CHECK(clock.answered(60515).imageMs == 105);    // 115 − 10
+}
+
 TEST_CASE("a trial without a task begins with the picture", "[study]") {
     TrialClock clock(0, 500);
     CHECK(clock.screen() == Screen::Picture);

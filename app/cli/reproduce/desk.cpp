@@ -6,8 +6,8 @@
 #include "base/check.h"
 #include "base/json_file.h"
 #include "base/stopwatch.h"
+#include "child_program.h"
 #include "command_line.h"
-#include "reproduce/child_program.h"
 #include "reproduce/thesis_tfs.h"
 #include "tf/formats/tf_file.h"
 #include "tf/formats/tf_json.h"
@@ -15,6 +15,8 @@
 namespace pellucid::cli {
 
 namespace {
+
+constexpr int kInterrupted = 130; ///< exit status after Ctrl-C
 
 Source sampleSource(const std::string& name, int size, const std::string& inPlaceOf) {
     return {{"sample:" + name, "--sample-size", std::to_string(size)},
@@ -56,12 +58,7 @@ std::vector<FeatureFigures> featuresOf(const Json& measured) {
 }
 
 Desk::Desk(const Item& item, const DeskSettings& settings, std::stop_token stop)
-    : m_settings(settings), m_stop(std::move(stop)), m_needs(item.data) {
-    m_result.id = item.id();
-    m_result.shows = item.shows;
-    m_result.title = item.title;
-    m_result.thesis = item.thesis;
-    m_result.equations = item.equations;
+    : m_settings(settings), m_stop(std::move(stop)), m_needs(item.data), m_result(item.unmade()) {
     std::error_code ec;
     std::filesystem::create_directories(settings.folder / item.id(), ec);
     if (ec)
@@ -69,16 +66,15 @@ Desk::Desk(const Item& item, const DeskSettings& settings, std::stop_token stop)
                         "check permissions and space");
 }
 
-Source Desk::data(std::size_t need) {
-    Source source = sourceOf(m_needs.at(need), m_settings);
+Source Desk::used(Source source) {
     if (std::ranges::find(m_result.data, source.said) == m_result.data.end()) m_result.data.push_back(source.said);
     return source;
 }
 
+Source Desk::data(std::size_t need) { return used(sourceOf(m_needs.at(need), m_settings)); }
+
 Source Desk::sample(const std::string& name, int size, const std::string& inPlaceOf) {
-    Source source = sampleSource(name, size, inPlaceOf);
-    if (std::ranges::find(m_result.data, source.said) == m_result.data.end()) m_result.data.push_back(source.said);
-    return source;
+    return used(sampleSource(name, size, inPlaceOf));
 }
 
 std::string Desk::tf(const std::string& name) {
@@ -97,11 +93,14 @@ std::string Desk::writeTf(const std::string& name, const TransferFunction& tf) {
 TransferFunction Desk::readTf(const std::string& file) const { return pellucid::readTf(pathOf(file).string()); }
 
 std::string Desk::start(const Words& words, const std::string& out) {
-    const Words all = words + m_settings.common;
+    Words all = words;
+    for (const auto& [option, value] : m_settings.common)
+        if (std::ranges::find(words, option) == words.end()) all = all + Words{option, value};
     const std::string line = commandLineOf(all) + (out.empty() ? "" : " > " + out);
     const Stopwatch watch;
     const ChildEnd end = runChild({m_settings.program, all, m_settings.folder, out.empty() ? "" : pathOf(out)}, m_stop);
     m_result.commands.push_back({line, watch.seconds()});
+    if (end.status == kInterrupted) throw Cancelled{}; // the terminal has told it before us
     if (end.status != 0)
         throw Error("a command failed: " + reasonOf(end), line, "run it in " + m_settings.folder.string());
     return line;
@@ -128,8 +127,10 @@ void Desk::number(const std::string& what, double ours, double thesis, const std
     m_result.numbers.push_back({what, ours, thesis, unit});
 }
 
-void Desk::statement(const std::string& section, const std::string& sentence, bool holds, const std::string& figures) {
+void Desk::statement(const std::string& section, const std::string& sentence, bool holds, const std::string& figures,
+                     const std::string& otherwise) {
     m_result.statements.push_back({sentence, section, holds, figures});
+    if (!holds && !otherwise.empty()) remark(otherwise);
 }
 
 Reproduction Desk::result(double seconds) const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output.h"
@@ -25,7 +26,8 @@ struct DeskSettings {
     std::filesystem::path folder;              ///< of the report, absolute; commands run there
     std::optional<std::filesystem::path> data; ///< --data, absolute
     int sampleSize = 64;                       ///< voxels along the longest axis of samples
-    Words common = {};                         ///< words at the end of every command: --threads
+    /// Options of every command that does not give them itself, with their values: --threads, --memory.
+    std::vector<std::pair<std::string, std::string>> common = {};
 };
 
 /// Links in the folder of the report to --data and to the folder `thesis` beside it, so that commands name files
@@ -84,14 +86,17 @@ public:
     void picture(const std::string& file, const std::string& figure, const std::string& caption);
     void number(const std::string& what, double ours, double thesis, const std::string& unit = "");
     void table(ReproducedTable table) { m_result.tables.push_back(std::move(table)); }
-    /// A sentence of section `section`, whether it holds, and the figures that say so.
-    void statement(const std::string& section, const std::string& sentence, bool holds, const std::string& figures);
+    /// A sentence of section `section`, whether it holds, and the figures that say so; `otherwise` becomes a remark
+    /// where it does not.
+    void statement(const std::string& section, const std::string& sentence, bool holds, const std::string& figures,
+                   const std::string& otherwise = "");
     /// On a difference from the thesis.
     void remark(const std::string& sentence) { m_result.remarks.push_back(sentence); }
 
     Reproduction result(double seconds) const;
 
 private:
+    Source used(Source source); ///< the report says so
     std::string start(const Words& words, const std::string& out);
 
     const DeskSettings& m_settings;

@@ -32,6 +32,8 @@ struct Item {
     bool timed = false; ///< measures times, so nothing else runs beside it
 
     const std::string& id() const { return shows.front(); }
+    /// What is known of its result before it runs.
+    Reproduction unmade() const;
 };
 
 /// In the order of the thesis: those of each chapter, and all.

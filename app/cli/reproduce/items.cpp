@@ -15,6 +15,16 @@ bool shows(const Item& item, const std::string& name) {
 
 } // namespace
 
+Reproduction Item::unmade() const {
+    Reproduction result;
+    result.id = id();
+    result.shows = shows;
+    result.title = title;
+    result.thesis = thesis;
+    result.equations = equations;
+    return result;
+}
+
 const std::vector<Item>& items() {
     static const std::vector<Item> all = [] {
         std::vector<Item> items;

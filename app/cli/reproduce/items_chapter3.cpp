@@ -13,7 +13,7 @@ namespace {
 const DataNeed kKnee{"CT-Knee (379×229×305)", "knee"},
     kHead{"VisMale (128×256×256)", "knee", "cranium_ct/cranium_ct.nrrd", false},
     kVortex{"turbulent vortex (128×128×128, 100 steps)", "vortex"},
-    kVortexStep{"turbulent vortex (128×128×128), step 1,", "vortex", "vortex/vorts1.mhd"};
+    kVortexStep{"turbulent vortex (128×128×128, step 1)", "vortex", "vortex/vorts1.mhd"};
 const std::string kView = "30,20";
 
 /// `tf` in the sample's own features, so that figures tell what becomes of each tissue. Nothing else changes.
@@ -235,7 +235,8 @@ void refineRegion(Desk& desk) {
                    "visibility of the bone " + fromTo(of(0, cut.wanted).visibility, of(1, cut.wanted).visibility));
     desk.statement("3.5.3", "However, the intermediate material (the bone) also becomes less clear.",
                    of(1, cut.wanted).opacity < of(0, cut.wanted).opacity,
-                   "opacity of the bone " + fromTo(of(0, cut.wanted).opacity, of(1, cut.wanted).opacity));
+                   "opacity of the bone " + fromTo(of(0, cut.wanted).opacity, of(1, cut.wanted).opacity),
+                   "In this head bone is rare, and refinement by entropy takes opacity from what is common only.");
     desk.statement("3.5.3", "The bone becomes more clear after the region-based optimization.",
                    of(2, cut.wanted).visibility > of(1, cut.wanted).visibility,
                    "visibility of the bone " + fromTo(of(1, cut.wanted).visibility, of(2, cut.wanted).visibility));

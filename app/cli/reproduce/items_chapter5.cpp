@@ -99,7 +99,9 @@ void sayHowVwsFollows(Desk& desk, const SampledSpace& space) {
         "5.3.2", "The visibility-weighted saliency of each feature increases as its opacity increases.", rises,
         "over all " + std::to_string(space.size()) + " samples the deepest fall in a step is " + joined(falls));
     desk.statement("5.3.2", "That of feature 1, the exterior, is almost not influenced by the opacity of others.",
-                   influence[0] < 0.1, "the others' influence is " + figureText(influence[0]) + " of its own");
+                   influence[0] < 0.1, "the others' influence is " + figureText(influence[0]) + " of its own",
+                   "The VWS here are shares of a whole: where another feature's rises, that of the exterior falls, "
+                   "though nothing covers it.");
     desk.statement("5.3.2", "That of feature 2 is influenced by feature 1 and itself.",
                    space.meanRange(1, 0) > 0.1 && space.meanRange(1, 1) > 0.1 &&
                        space.meanRange(1, 2) < std::min(space.meanRange(1, 0), space.meanRange(1, 1)),
@@ -419,10 +421,9 @@ void table51(Desk& desk) {
     desk.statement("5.4", "The parallel line search is significantly faster than the sequential one.",
                    parallelSeconds < 0.8 * lineSeconds,
                    "all searches together take " + figureText(lineSeconds) + " s and " + figureText(parallelSeconds) +
-                       " s");
-    desk.remark(
-        "Here both searches use all threads in every evaluation, so that the parallel one has less to gain. Times "
-        "are those of the search; saliency, which does not change, is made once before it.");
+                       " s",
+                   "Here both searches use all threads in every evaluation, so the parallel one has less to gain.");
+    desk.remark("Times are those of the search; saliency, which does not change, is made once before it.");
     if (!anyExact)
         desk.remark(
             "Without the thesis's data and starts (--data) the steps of its table cannot be met, only their order.");
@@ -468,9 +469,15 @@ void threadTimes(Desk& desk) {
                    "seconds with 1, 2, 4 and 8 threads: " + joined(told, "; ") + "; " + has);
     if (processors < totals.rbegin()->first)
         desk.statement("5.4", "The speedup is minor beyond the number of cores.", levels,
-                       has + "; all volumes together: " + joined(totals, ", ", [](const auto& total) {
-                           return std::to_string(total.first) + " threads " + figureText(total.second) + " s";
-                       }));
+                       has + "; all volumes together: " +
+                           joined(totals, ", ",
+                                  [](const auto& total) {
+                                      return std::to_string(total.first) +
+                                             (total.first == 1 ? " thread " : " threads ") + figureText(total.second) +
+                                             " s";
+                                  }),
+                       "Other programs ran on this machine at the same time: with more threads this one gets more of "
+                       "the processors.");
 }
 
 } // namespace

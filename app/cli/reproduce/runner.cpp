@@ -5,11 +5,13 @@
 #include <chrono>
 #include <fstream>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "base/atomic_file.h"
 #include "base/json_value.h"
 #include "base/stopwatch.h"
+#include "volume/loader.h"
 
 namespace pellucid::cli {
 
@@ -32,9 +34,18 @@ Json stateOf(const fs::path& file) {
 
 /// Everything that the result of an item depends on.
 Json inputsOf(const Item& item, const DeskSettings& settings) {
+    std::set<fs::path> files;
+    for (const DataNeed& need : item.data) {
+        const auto file = realFileOf(need, settings);
+        if (!file) continue;
+        VolumeSource source;
+        source.path = file->string();
+        for (const std::string& read : filesOf(source)) files.insert(read);
+    }
+    if (std::error_code ec; !files.empty())
+        for (const auto& entry : fs::directory_iterator(settings.folder / kThesisLink, ec)) files.insert(entry.path());
     Json data = Json::array();
-    for (const DataNeed& need : item.data)
-        if (const auto file = realFileOf(need, settings)) data.push_back(stateOf(*file));
+    for (const fs::path& file : files) data.push_back(stateOf(file));
     return {{"version", PELLUCID_VERSION},
             {"program", stateOf(settings.program)},
             {"sample_size", settings.sampleSize},
@@ -59,12 +70,7 @@ Reproduction done(const Item& item, const DeskSettings& settings, const std::sto
     const Stopwatch watch;
     std::error_code ec;
     fs::remove(resultFile(item, settings), ec); // from now on the folder's pictures are not those of the old result
-    Reproduction result;
-    result.id = item.id();
-    result.shows = item.shows;
-    result.title = item.title;
-    result.thesis = item.thesis;
-    result.equations = item.equations;
+    Reproduction result = item.unmade();
     try {
         Desk desk(item, settings, stop);
         try {
@@ -131,7 +137,7 @@ std::optional<Reproduction> keptResult(const Item& item, const DeskSettings& set
         requireFormat(value, kFormat, kVersion, "leave it to reproduce");
         if (document.at("inputs") != nlohmann::json(inputsOf(item, settings))) return {};
         Reproduction result = reproductionFromJson(document.at("item"), file.string());
-        const bool whole = result.id == item.id() && std::ranges::all_of(result.pictures, [&](const auto& picture) {
+        const bool whole = result.shows == item.shows && std::ranges::all_of(result.pictures, [&](const auto& picture) {
                                return fs::exists(settings.folder / picture.file, ec);
                            });
         if (whole) return result;
@@ -180,7 +186,7 @@ void linkData(const DeskSettings& settings) {
     link(settings.folder / kDataLink, *settings.data);
     const fs::path thesis = settings.data->parent_path() / kThesisLink;
     std::error_code ec;
-    if (fs::is_directory(thesis, ec)) link(settings.folder / kThesisLink, thesis);
+    if (fs::is_directory(thesis, ec) && !fs::equivalent(thesis, settings.folder, ec)) link(settings.folder / kThesisLink, thesis);
 }
 
 } // namespace pellucid::cli

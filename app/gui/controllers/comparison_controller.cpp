@@ -347,13 +347,17 @@ void ComparisonController::followFigures() {
         return sideInput(scene, pictureInput(scene, m_size.width(), m_size.height()), saliency);
     };
     Inputs wanted{inputOf(a), inputOf(*m_sceneB)};
+    if (m_comparison && wanted == m_compared && m_comparison->b != view().b->name) {
+        m_comparison->b = view().b->name; // pinned again, as it was
+        ++m_version;
+        Q_EMIT changed();
+    }
     if (wanted == m_wanted && (m_state == State::Computing || m_state == State::Current)) return;
     m_wanted = std::move(wanted);
     m_failure.reset();
     m_comparing.cancel();
     m_rest.stop();
     if (m_comparison && m_wanted == m_compared) {
-        m_comparison->b = view().b->name;
         ++m_version;
         return setState(State::Current);
     }
@@ -437,7 +441,7 @@ void ComparisonController::addModes(ActionMenu& menu) {
         menu.addCheck(
             id, text, keys, tip, [this, mode] { return hasB() && view().mode == mode; },
             [this, mode] {
-                if (!hasB()) pin();
+                if (mode != CompareMode::Off && !hasB()) pin();
                 change([mode](ComparisonView& view) { view.mode = mode; });
             });
     };

@@ -167,10 +167,11 @@ const std::vector<RegionColor>* RefineController::colorsOf(const ImageRegion& re
     return nullptr;
 }
 
-std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings& settings) const {
+std::optional<RefinePriority> RefineController::priorityOf(const Scene& scene) const {
+    const RefineSettings& settings = *scene.session.refine;
     RefinePriority priority;
     priority.intensity = settings.intensity;
-    if (settings.hue) return huePriority(m_services.scene(), m_services.scene().tf, *settings.hue);
+    if (settings.hue) return huePriority(scene, scene.tf, *settings.hue);
     if (settings.region) {
         const auto* colors = colorsOf(*settings.region);
         if (colors == nullptr) return {};
@@ -180,10 +181,10 @@ std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings&
 }
 
 RefineOptions RefineController::options() const {
-    const Session& session = m_services.store().session();
-    RefineOptions options = refineOptions(session);
+    const Scene& scene = m_services.scene();
+    RefineOptions options = refineOptions(scene.session);
     try {
-        options.priority = priorityOf(*session.refine).value_or(RefinePriority());
+        options.priority = priorityOf(scene).value_or(RefinePriority());
     } catch (const Error&) { // no colour has a hue: who refines is told
     }
     return options;
@@ -276,11 +277,10 @@ void RefineController::refine() {
     SessionStore& store = m_services.store();
     if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
-    const RefineSettings& settings = *store.session().refine;
     m_services.attempt(tr("Refinement failed"), [&] {
-        const std::optional<RefinePriority> priority = priorityOf(settings);
-        if (!priority) return look(*settings.region, tr("Refine"));
-        RefineOptions by = options();
+        const std::optional<RefinePriority> priority = priorityOf(store.scene());
+        if (!priority) return look(*store.session().refine->region, tr("Refine"));
+        RefineOptions by = refineOptions(store.session());
         by.priority = *priority;
         const Refinement r = refineFrom(store.scene().tf, store.scene().tf, store.scene(), by);
         r.after == r.before ? sayRefined(r) : apply(r, tr("Refine"), {});
@@ -317,8 +317,7 @@ void RefineController::dragPriority(double x) {
         m_dragStart = startOfPriority();
     }
     const bool good = m_services.attempt(tr("Refinement failed"), [&] {
-        RefineOptions by = options();
-        by.priority = {};
+        RefineOptions by = refineOptions(store.session());
         by.priority.intensity = std::clamp(x, 0.0, 1.0);
         const Refinement r = refineFrom(*m_dragStart, *m_dragStart, store.scene(), by);
         const auto change = [&](RefineSettings& s) {
@@ -375,8 +374,7 @@ void RefineController::refineForRegion(const Look& look) {
     if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
     m_services.attempt(tr("Refinement failed"), [&] {
-        RefineOptions by = options();
-        by.priority = {};
+        RefineOptions by = refineOptions(store.session());
         by.priority.region = *colorsOf(look.region);
         const TransferFunction start = startOfPriority();
         apply(refineFrom(start, start, store.scene(), by), look.text, [&](RefineSettings& s) {
@@ -426,7 +424,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         before.session.measure->profile == after.session.measure->profile)
         return {};
     try {
-        const auto priority = priorityOf(settings);
+        const auto priority = priorityOf(after);
         if (!priority) {
             later(this, [this] { refine(); });
             return {};

@@ -108,7 +108,7 @@ private:
     TransferFunction startOfPriority() const;
     const std::vector<RegionColor>* colorsOf(const ImageRegion& region) const;
     /// Empty: the colours of the region are not known yet.
-    std::optional<RefinePriority> priorityOf(const RefineSettings& settings) const;
+    std::optional<RefinePriority> priorityOf(const Scene& scene) const;
     /// Refines `start`, which is `before` but for what an edit holds fixed and makes give way.
     Refinement refineFrom(const TransferFunction& before, const TransferFunction& start, const Scene& scene,
                           RefineOptions options) const;

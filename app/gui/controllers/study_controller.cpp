@@ -114,7 +114,7 @@ void StudyController::analyze(const QString& folder, const StudyAnalysisOptions&
 }
 
 StudyWindow* StudyController::run(const QString& folder, const QString& participant) {
-    m_services.attempt(tr("Cannot run the study"), [&] {
+    const bool opened = m_services.attempt(tr("Cannot run the study"), [&] {
         const std::string id =
             participant.isEmpty() ? newParticipantId(folder.toStdString()) : participant.toStdString();
         m_window = openStudy(folder.toStdString(), id);
@@ -122,7 +122,7 @@ StudyWindow* StudyController::run(const QString& folder, const QString& particip
         connect(m_window, &QObject::destroyed, &m_services.actions(), &Actions::refresh, Qt::QueuedConnection);
         m_services.actions().refresh();
     });
-    return m_window;
+    return opened ? m_window.data() : nullptr;
 }
 
 void StudyController::chooseView() {

@@ -81,9 +81,9 @@ QWidget* StudyDialog::controlOf(const Setting& setting) {
         return box;
     }
     if (const auto* number = std::get_if<double*>(&value)) {
-        constexpr double kLeast = 0.01;
+        constexpr double kLeast = 0.001;
         auto* box = named(new QDoubleSpinBox(this), id, tip);
-        box->setDecimals(2);
+        box->setDecimals(3);
         box->setRange(setting.range.open == NumberRange::Open::Low ? kLeast : setting.range.lo, setting.range.hi);
         box->setSuffix(unit);
         box->setValue(**number);
@@ -91,7 +91,10 @@ QWidget* StudyDialog::controlOf(const Setting& setting) {
         return box;
     }
     auto* edit = named(new QLineEdit(QString::fromStdString(text), this), id, tip);
-    m_take.emplace_back([&setting, edit](Study& s) { setText(setting, &s, edit->text().toStdString()); });
+    m_take.emplace_back([&setting, edit, shown = edit->text()](Study& s) {
+        if (edit->text() != shown) // else it stays as it is in the file, where it may have several lines
+            setText(setting, &s, edit->text().toStdString());
+    });
     return edit;
 }
 

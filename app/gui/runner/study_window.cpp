@@ -246,15 +246,15 @@ void StudyWindow::askToLeave() {
     if (m_page == Page::Leave) return;
     m_timer.stop();
     m_before = m_page;
+    m_leftAt = now();
     turnTo(Page::Leave);
 }
 
 void StudyWindow::stay() {
     // A picture that was covered has been seen for another time than it should: its trial begins again.
-    if (m_before == Page::Task || m_before == Page::Picture)
-        beginTrial();
-    else
-        turnTo(m_before);
+    if (m_before == Page::Task || m_before == Page::Picture) return beginTrial();
+    if (m_before == Page::Question) m_clock->leaveOut(now() - m_leftAt);
+    turnTo(m_before);
 }
 
 void StudyWindow::tellTrouble(const QString& title, const Error& error, bool canRetry) {

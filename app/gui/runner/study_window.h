@@ -68,6 +68,7 @@ private:
     Pictures m_pictures;
     bool m_isReady = false;
     Page m_page = Page::Consent, m_before = Page::Consent; ///< the latter: where to stay
+    double m_leftAt = 0;                                   ///< when it asked whether to leave, ms
     std::optional<std::size_t> m_rested;                   ///< the trial before which the last pause was
     QElapsedTimer m_watch;
     QTimer m_timer;

@@ -1,4 +1,4 @@
-#include "reproduce/child_program.h"
+#include "child_program.h"
 
 #include <array>
 #include <cerrno>
@@ -51,11 +51,15 @@ public:
     Preparation& operator=(const Preparation&) = delete;
 
     void prepare(const ChildRun& run, std::FILE* error) {
-        posix_spawn_file_actions_addchdir_np(&m_actions, run.folder.c_str());
+        if (!run.folder.empty()) posix_spawn_file_actions_addchdir_np(&m_actions, run.folder.c_str());
         posix_spawn_file_actions_addopen(&m_actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        const char* const out = run.out.empty() ? "/dev/null" : run.out.c_str();
-        posix_spawn_file_actions_addopen(&m_actions, STDOUT_FILENO, out, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-        posix_spawn_file_actions_adddup2(&m_actions, fileno(error), STDERR_FILENO);
+        if (run.talks) {
+            posix_spawn_file_actions_adddup2(&m_actions, STDERR_FILENO, STDOUT_FILENO); // ours is for the answer
+        } else {
+            const char* const out = run.out.empty() ? "/dev/null" : run.out.c_str();
+            posix_spawn_file_actions_addopen(&m_actions, STDOUT_FILENO, out, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+            posix_spawn_file_actions_adddup2(&m_actions, fileno(error), STDERR_FILENO);
+        }
         // This program blocks the signals that it waits for; the new one begins as a shell would begin it.
         sigset_t none;
         sigemptyset(&none);
@@ -83,7 +87,7 @@ pid_t start(const ChildRun& run, std::FILE* error) {
                                     pointers.data(), environ);
     if (failure != 0)
         throw Error("cannot start the program (" + std::generic_category().message(failure) + ")", run.program.string(),
-                    "check permissions and the folder " + run.folder.string());
+                    "check its permissions" + (run.folder.empty() ? "" : " and the folder " + run.folder.string()));
     return child;
 }
 
@@ -98,7 +102,7 @@ ChildEnd runChild(const ChildRun& run, const std::stop_token& stop) {
     int status = 0;
     {
         // It is not yet waited for, so the number cannot be another's by now.
-        const std::stop_callback stopIt(stop, [child] { kill(child, SIGTERM); });
+        const std::stop_callback stopIt(stop, [child, by = run.stopBy] { kill(child, by); });
         siginfo_t ended{};
         while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
         }
