@@ -186,7 +186,8 @@ void linkData(const DeskSettings& settings) {
     link(settings.folder / kDataLink, *settings.data);
     const fs::path thesis = settings.data->parent_path() / kThesisLink;
     std::error_code ec;
-    if (fs::is_directory(thesis, ec) && !fs::equivalent(thesis, settings.folder, ec)) link(settings.folder / kThesisLink, thesis);
+    if (fs::is_directory(thesis, ec) && !fs::equivalent(thesis, settings.folder, ec))
+        link(settings.folder / kThesisLink, thesis);
 }
 
 } // namespace pellucid::cli
