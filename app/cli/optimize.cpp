@@ -88,7 +88,7 @@ std::string textOf(const OptimizeResult& r, const std::vector<std::string>& name
                                      [](const OptimizeState& s) { return s.level == 0; });
     return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + "\n" + seenLines(r) + "objective " +
            plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
-           std::to_string(r.iterations()) + " iterations, " +
+           std::to_string(r.iterations()) + (r.iterations() == 1 ? " move, " : " moves, ") +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " along rays, " : "") +
            (later > 0 ? std::to_string(later) + " more for the strength of the picture, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
@@ -110,7 +110,8 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
     if (!o.requireConverged || r.converged()) return {};
     return Error("the targets were not reached (objective " + plainText(r.history[r.best].objective) +
                      ", wanted below " + plainText(options.tolerance) + ")",
-                 std::string(name(r.reason)) + " after " + std::to_string(r.iterations()) + " iterations",
+                 std::string(name(r.reason)) + " after " + std::to_string(r.iterations()) +
+                     (r.iterations() == 1 ? " move" : " moves"),
                  "raise --max-iterations or --tolerance, or choose other targets");
 }
 

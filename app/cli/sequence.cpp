@@ -371,10 +371,9 @@ void Sequence::tellMissed(const SequenceFigures& figures) {
             empty[i] += f.empty[i] ? 1 : 0;
         }
     if (isAimed && figures.above > 0)
-        m_notices.push_back(framesOf(figures.above, figures.frames) +
-                            (figures.above == 1 ? " is not on target (F below " : " are not on target (F below ") +
-                            plainText(tolerance) + "); the farthest is frame " + std::to_string(figures.worst) +
-                            ", F = " + plainText(figures.worstObjective) +
+        m_notices.push_back(framesOf(figures.above, figures.frames) + (figures.above == 1 ? " is" : " are") +
+                            " not within " + percentText(tolerance) + " of the targets; the farthest, frame " +
+                            std::to_string(figures.worst) + ", is " + offTargetText(figures.worstObjective) +
                             (settings().mode == Mode::Optimize && !m_scene.session.optimize->exactShares
                                  ? "; shares that can hardly be seen give way (--exact-shares meets them)"
                                  : ""));

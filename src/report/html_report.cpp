@@ -1,10 +1,11 @@
 #include "report/html_report.h"
-#include "base/round_numbers.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/round_numbers.h"
+#include "optimize/answer/visibility_words.h"
 #include "report/convergence.h"
 #include "report/csv.h"
 #include "report/page_parts.h"
@@ -57,7 +58,8 @@ std::string headline(const Run& run) {
     const auto coarse = std::count_if(run.history.begin(), run.history.end(),
                                       [](const OptimizeState& state) { return state.level > 0; });
     const std::string before = coarse > 0 ? " after " + std::to_string(coarse) + " along rays" : "";
-    const std::string figures = "F = " + f + ", from " + from + ", in " + moves + before;
+    const std::string figures = offTargetText(run.after) + " (F " + f + "), from " + percentText(run.before) + " (F " +
+                                from + "), in " + moves + before;
     if (run.ended == "converged") return "On target: " + figures + ".";
     if (run.ended == "max-iterations") return "Stopped at the most moves allowed: " + figures + ".";
     if (run.ended == "visible") return "As near as it comes with a picture that can be seen: " + figures + ".";

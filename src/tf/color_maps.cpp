@@ -163,13 +163,13 @@ std::span<const ColorMap> colorMaps() {
     using Kind = ColorMap::Kind;
     static const std::array<ColorMap, 8> kMaps{{
         {"hue", "Hue spectrum, as in the thesis", Kind::Hue, false, hueMap},
-        {"spiral", "Violet over green to yellow, ever lighter", Kind::Sequential, true, spiral},
-        {"ember", "Violet over red to yellow, ever lighter", Kind::Sequential, true, ember},
-        {"sand", "Blue to yellow, ever lighter, the same for colour-blind eyes", Kind::Sequential, true, sand},
+        {"spiral", "Viridis-like: violet, green, yellow", Kind::Sequential, true, spiral},
+        {"ember", "Inferno-like: violet, red, yellow", Kind::Sequential, true, ember},
+        {"sand", "Cividis-like: blue to yellow, safe for colour-blind viewers", Kind::Sequential, true, sand},
         {"grey", "Black to white in even steps of lightness", Kind::Sequential, true, grey},
         {"blue-orange", "Blue, white in the middle, orange", Kind::Diverging, true, blueOrange},
         {"blue-red", "Blue, white in the middle, red", Kind::Diverging, true, blueRed},
-        {"categorical", "One colour per feature, told apart by all eyes", Kind::Categorical, true, categorical},
+        {"categorical", "One colour per feature, safe for colour-blind viewers", Kind::Categorical, true, categorical},
     }};
     return kMaps;
 }

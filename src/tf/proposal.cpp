@@ -469,8 +469,8 @@ Proposal propose(const Volume& data, const JobControl& job) {
     result.outside = valid > 0 ? static_cast<double>(outside) / static_cast<double>(valid) : 0;
     const ValueRange whole = data.dataRange();
     if (result.window.lo > whole.lo || result.window.hi < whole.hi)
-        result.why.push_back("values reach from " + e.text(whole.lo, whole.hi) + "; " + percent(result.outside) +
-                             " of the voxels lie beyond the window");
+        result.why.push_back("range clipped to " + e.text(result.window.lo, result.window.hi) + " (" +
+                             percent(result.outside) + " of voxels outside)");
     switch (kind.kind) {
     case DataKind::Labels:
     case DataKind::Binary:

@@ -112,7 +112,8 @@ void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
         missing += static_cast<std::uint64_t>(difference / step - 1) * static_cast<std::uint64_t>(count);
     }
     if (missing > numbers.size()) {
-        list.notices.push_back("the numbers of the files have gaps: " + std::to_string(missing) + " are not there");
+        list.notices.push_back(std::to_string(missing) +
+                               (missing == 1 ? " frame number is missing" : " frame numbers are missing"));
         for (std::size_t i = 1; i < numbers.size(); ++i)
             if (numbers[i] - numbers[i - 1] > step) list.afterGap.insert(i);
         return;

@@ -25,8 +25,8 @@ TEST_CASE("a target that a locked feature keeps out of reach is explained", "[ve
     w.child<QAction>("optimizeAction").trigger();
     w.settle();
     CHECK(message.isVisible());
-    CHECK(message.text().startsWith("Out of reach: F = "));
-    CHECK(message.text().contains("f1 is locked at opacity 0.95; unlocked, the target is reached"));
+    CHECK(message.text().startsWith("Out of reach: the nearest is off target by "));
+    CHECK(message.text().contains("f1 is locked at opacity 0.95; unlocked, the targets are reached"));
     CHECK(message.text().contains("f1 hides"));
     CHECK(featureOpacities(w.document().tf())[0] == Approx(0.95).margin(1e-6));
     const QImage before = w.picture();

@@ -2,16 +2,19 @@
 #include "gui_support.h"
 
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDockWidget>
 #include <QHelpEvent>
 #include <QLabel>
 #include <QPushButton>
+#include <QTableView>
 #include <QToolTip>
 
 #include <glm/geometric.hpp>
 
 #include "controllers/view_search_controller.h"
+#include "optimize/answer/visibility_words.h"
 #include "render/view_direction.h"
 #include "view/view_globe.h"
 
@@ -171,7 +174,7 @@ TEST_CASE("the best view is gone to, and is the best", "[gui][views]") {
     CHECK(w.search().map().metric.figure == ViewMetric::Figure::Vws);
     CHECK(w.search().map().metric.feature == 1);
     CHECK(w.search().best()->best.value >= w.search().best()->present.value);
-    CHECK(w.words().contains("VWS = "));
+    CHECK(w.words().contains("Attention = "));
     CHECK(differentPixels(globe, w.globePicture()) > 100);
 }
 
@@ -180,16 +183,17 @@ TEST_CASE("globe and panel have the same figure of this view, and say what is of
     w.document().setCamera(rotated(w.document().camera(), w.document().volume()->geometry(), 25, 10));
     w.settle();
     REQUIRE_FALSE(w.document().camera() == w.search().best()->best.camera);
-    const QString figure = QString::number(*w.services().results().objective(), 'f', 4);
+    const double objective = *w.services().results().objective();
+    const QString figure = QString::fromStdString(offTargetText(objective));
     INFO(w.words().toStdString());
-    CHECK(w.child<QLabel>("distanceLabel").text().endsWith("F = " + figure));
-    CHECK(w.words().endsWith("From here: F = " + figure + "."));
+    CHECK(w.child<QLabel>("distanceLabel").text().compare(figure, Qt::CaseInsensitive) == 0);
+    CHECK(w.words().endsWith("From here: " + figure + "."));
     // Of a place that nobody has measured on the volume.
     const QPointF at = *w.globe().pointOf(w.upperRight());
     QHelpEvent help(QEvent::ToolTip, at.toPoint(), w.globe().mapToGlobal(at.toPoint()));
     QCoreApplication::sendEvent(&w.globe(), &help);
     INFO(QToolTip::text().toStdString());
-    CHECK(QToolTip::text().contains(QStringLiteral("F ≈ ")));
+    CHECK(QToolTip::text().contains("about off target by "));
     CHECK(QToolTip::text().contains("on a coarser copy of the volume"));
     QToolTip::hideText();
     // The share of a feature, likewise.
@@ -198,7 +202,34 @@ TEST_CASE("globe and panel have the same figure of this view, and say what is of
     Q_EMIT box.activated(2);
     w.found();
     const double vws = w.document().measures()->features[1].vws;
-    CHECK(w.words().endsWith(QStringLiteral("VWS = %1.").arg(vws, 0, 'f', 4)));
+    CHECK(w.words().endsWith(QStringLiteral("Attention = %1.").arg(vws, 0, 'f', 4)));
+}
+
+TEST_CASE("figures have plain names, and scientific ones where these are chosen", "[gui][words]") {
+    OpenGlobe w;
+    const double objective = *w.services().results().objective();
+    auto& table = w.child<QTableView>("featuresTable");
+    const auto header = [&](int column) {
+        return table.model()->headerData(column, Qt::Horizontal, Qt::DisplayRole).toString();
+    };
+    CHECK(header(FeaturesModel::Vws) == "Attention");
+    CHECK(header(FeaturesModel::Visibility) == "Seen");
+    CHECK(w.child<QLabel>("distanceLabel").text().startsWith("Off target by "));
+    w.child<QCheckBox>("scientificNamesCheck").click();
+    CHECK(header(FeaturesModel::Vws) == "VWS");
+    CHECK(header(FeaturesModel::Visibility) == "Visibility");
+    CHECK(w.child<QLabel>("distanceLabel").text() == QStringLiteral("F = %1").arg(objective, 0, 'f', 4));
+    CHECK(w.words().contains("F = "));
+    w.child<QCheckBox>("scientificNamesCheck").click();
+    CHECK(header(FeaturesModel::Vws) == "Attention");
+    // The published profile has no other names.
+    w.document().store().edit("published", {}, [](Session& session) {
+        session.measure.edit([](MeasureSettings& m) { m.profile = Profile::Published; });
+    });
+    CHECK(header(FeaturesModel::Vws) == "VWS");
+    CHECK_FALSE(w.child<QCheckBox>("scientificNamesCheck").isEnabled());
+    w.services().undo();
+    CHECK(header(FeaturesModel::Vws) == "Attention");
 }
 
 TEST_CASE("a globe of an older state is pale until it is made anew", "[gui][views]") {

@@ -205,7 +205,7 @@ TEST_CASE("what is clipped away is said to be out of sight, and that the clippin
     REQUIRE_FALSE(v.helps.empty());
     CHECK(v.helps[0].kind == ReachHelp::Kind::Clipping);
     CHECK(v.helps[0].objective < 0.01);
-    CHECK(v.sentences.back().find("Without clipping the target is reached") == 0);
+    CHECK(v.sentences.back().find("Without clipping the targets are reached") == 0);
 }
 
 TEST_CASE("what has the colour of the background needs another one", "[optimize][verdict]") {

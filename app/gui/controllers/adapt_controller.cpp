@@ -22,7 +22,7 @@ constexpr ModeText kModes[] = {
      QT_TR_NOOP(
          "Each frame's transfer function is that of the frame before, refined by the entropy of its own values")},
     {Mode::Optimize, "adaptOptimizeAction", QT_TR_NOOP("&Optimize every frame"),
-     QT_TR_NOOP("Each frame's opacities bring VWS to the targets, starting from those of the frame before")},
+     QT_TR_NOOP("Each frame's opacities bring attention to the targets, starting from those of the frame before")},
 };
 
 } // namespace
@@ -76,7 +76,7 @@ void AdaptController::addActions() {
     m_keyActions << menu.add(
         "nextKeyAction", tr("Ne&xt key"), "Ctrl+.", {}, [this] { goToKey(1); }, always);
     m_keyActions << menu.add(
-        "fromHereAction", tr("From this frame o&n"), {},
+        "fromHereAction", tr("Start from this f&rame"), {},
         tr("The transfer functions of all later frames begin with that of this frame: later keys are removed"),
         [this] { fromHereOn(); });
 }

@@ -7,6 +7,7 @@
 #include "controllers/optimize_controller.h"
 #include "services/services.h"
 #include "tf/shown_tf.h"
+#include "widgets/terms.h"
 
 namespace pellucid::gui {
 namespace {
@@ -46,8 +47,8 @@ void LiveController::addActions() {
         });
     };
     m_action = m_services.actions().add(
-        tr("&Transfer function"), "liveTargetsAction", tr("Hold targets &live"), "Ctrl+Shift+L",
-        tr("Opacities follow while the view turns or a colour changes, so that VWS stays on the targets"), toggle,
+        tr("&Transfer function"), "liveTargetsAction", tr("&Keep targets while rotating"), "Ctrl+Shift+L",
+        tr("Opacities follow while the view turns or a colour changes, so that attention stays on the targets"), toggle,
         [this] { return m_services.isEditable(); }, {.checked = [this] { return isOn(); }});
     connect(&m_optimizing, &OptimizeController::runningChanged, this, [this] {
         if (m_optimizing.isRunning())
@@ -145,7 +146,7 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
     m_settled = present().held;
     m_services.results().setPaused(false);
     if (update.objective >= task.held.options.tolerance)
-        m_optimizing.say(tr("Live: the targets are not held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
+        m_optimizing.say(tr("The targets cannot be kept from this view: %1.").arg(terms().offTarget(update.objective)));
     Q_EMIT busyChanged();
 }
 

@@ -7,11 +7,10 @@
 #include "optimize/answer/visibility_words.h"
 #include "services/services.h"
 #include "tf/shown_tf.h"
+#include "widgets/terms.h"
 
 namespace pellucid::gui {
 namespace {
-
-QString fixed4(double value) { return QString::number(value, 'f', 4); }
 
 constexpr double kLeastStart = 1e-4; ///< opacity of a restart
 
@@ -19,10 +18,10 @@ constexpr double kLeastStart = 1e-4; ///< opacity of a restart
 
 QString sayOf(const OptimizeResult& result, int restarts) {
     const OptimizeState& best = result.history[result.best];
-    QString figures = (result.iterations() == 1 ? QObject::tr("F = %1, from %2, in %3 move")
-                                                : QObject::tr("F = %1, from %2, in %3 moves"))
-                          .arg(fixed4(best.objective), fixed4(result.history.front().objective))
-                          .arg(result.iterations());
+    QString figures =
+        (result.iterations() == 1 ? QObject::tr("%1, from %2, in %3 move") : QObject::tr("%1, from %2, in %3 moves"))
+            .arg(terms().offTarget(best.objective), terms().distanceText(result.history.front().objective))
+            .arg(result.iterations());
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
     const std::string kept = keptText(result), faint = faintText(result);
     if (!kept.empty()) return QString::fromStdString(faint.empty() ? kept : kept + " " + faint) + " (" + figures + ")";
@@ -98,7 +97,7 @@ OptimizeController::~OptimizeController() { ++m_number; }
 void OptimizeController::addActions() {
     m_services.actions().add(
         tr("&Transfer function"), "optimizeAction", tr("&Optimize to the targets"), "Ctrl+Return",
-        tr("Looks for opacities with which the features' saliency (VWS) meets the targets, from this camera"),
+        tr("Finds opacities with which each feature has the attention that its target asks for, from this view"),
         [this] { start(); },
         [this] { return m_services.store().hasVolume() && !isRunning() && !m_services.scene().tf.features.empty(); });
 }

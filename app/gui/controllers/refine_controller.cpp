@@ -143,7 +143,7 @@ void RefineController::addActions() {
                tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
                Selecting::Lasso);
     m_actions.nothing =
-        menu.add("prioritizeNothingAction", tr("Prioritize &nothing"), {},
+        menu.add("prioritizeNothingAction", tr("Clear priorit&y"), {},
                  tr("Forget the intensity or region that refinement brings out; opacities stay"),
                  [this] { prioritizeNothing(); },
                  {.enabled = [this, settings] { return m_services.isEditable() && settings().favoursAny(); }});

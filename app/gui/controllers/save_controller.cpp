@@ -98,7 +98,7 @@ void SaveController::addActions() {
              {.inToolBar = true});
     m_barsAction =
         menu.add("saveBarsAction", tr("Save &bars…"), {},
-                 tr("What each feature shows, visibility and VWS, as bar charts in the features' colours"),
+                 tr("How much of each feature is seen and catches the eye, as bar charts in the features' colours"),
                  [this] { chooseBars(); }, {.enabled = [this] { return !m_services.scene().tf.features.empty(); }});
     menu.add("saveReportAction", tr("Save &report of the last run…"), {},
              tr("One page about the latest optimization: pictures, bars, curves, settings"),

@@ -1,9 +1,5 @@
 #include "controllers/menu_actions.h"
 
-#include <QIcon>
-#include <QPainter>
-#include <QPixmap>
-
 #include "services/services.h"
 #include "store/view_edits.h"
 
@@ -11,39 +7,6 @@ namespace pellucid::gui {
 namespace {
 
 using Layout = SliceViews::Layout;
-
-/// The places of the views in a small window.
-QIcon iconOf(Layout layout) {
-    QIcon icon;
-    for (const int scale : {1, 2}) {
-        QPixmap pixmap(20 * scale, 20 * scale);
-        pixmap.setDevicePixelRatio(scale);
-        pixmap.fill(Qt::transparent);
-        QPainter painter(&pixmap);
-        painter.setPen(QPen(QColor(0x84, 0x88, 0x8e), 1.2)); // is seen on dark and on light
-        const QRectF all(2.5, 3.5, 15, 13);
-        painter.drawRect(all);
-        painter.setBrush(QColor(0x84, 0x88, 0x8e, 150)); // where the volume is
-        const QPointF middle = all.center();
-        if (layout == Layout::Volume) {
-            painter.drawRect(all);
-        } else if (layout == Layout::Four) {
-            painter.drawLine(QPointF(all.left(), middle.y()), QPointF(all.right(), middle.y()));
-            painter.drawRect(QRectF(QPointF(middle.x(), all.top()), QPointF(all.right(), middle.y())));
-            painter.drawLine(QPointF(middle.x(), all.top()), QPointF(middle.x(), all.bottom()));
-        } else {
-            const double x = all.left() + 0.65 * all.width();
-            painter.drawRect(QRectF(all.topLeft(), QPointF(x, all.bottom())));
-            for (const double share : {1 / 3.0, 2 / 3.0}) {
-                const double y = all.top() + share * all.height();
-                painter.drawLine(QPointF(x, y), QPointF(all.right(), y));
-            }
-        }
-        painter.end();
-        icon.addPixmap(pixmap);
-    }
-    return icon;
-}
 
 } // namespace
 
@@ -55,10 +18,9 @@ void addSliceActions(Services& services) {
     int key = 1;
     const auto addLayout = [&](Layout layout, const char* id, const QString& text, const QString& tip) {
         menu.addCheck(
-                id, text, QStringLiteral("Ctrl+Shift+%1").arg(key++), tip,
-                [&store, layout] { return store.session().slices->layout == layout; },
-                [&store, layout] { setLayout(store, layout); }, true)
-            ->setIcon(iconOf(layout));
+            id, text, QStringLiteral("Ctrl+Shift+%1").arg(key++), tip,
+            [&store, layout] { return store.session().slices->layout == layout; },
+            [&store, layout] { setLayout(store, layout); }, true);
     };
     addLayout(Layout::Volume, "layoutVolumeAction", QObject::tr("&Volume"), QObject::tr("The volume alone"));
     addLayout(Layout::Four, "layoutFourAction", QObject::tr("&Four views"),

@@ -78,7 +78,7 @@ void StudyController::addActions() {
              [this] { edit(); });
     menu.separate();
     menu.add("studyPrepareAction", tr("&Prepare study…"), {},
-             tr("Draws all pictures beforehand, and measures VWS, visibility and 2DFS of what is asked about"),
+             tr("Draws all pictures beforehand, and measures what people will be asked about (VWS, visibility, 2DFS)"),
              [this] { choosePrepared(); }, {.enabled = [this] { return !isBusy(); }});
     menu.add("studyRunAction", tr("&Run study…"), {},
              tr("Shows a prepared study to a participant, over the whole screen"), [this] { chooseRun(); },

@@ -105,7 +105,7 @@ void TargetActions::addActions() {
               QObject::tr("In proportion to the value at each feature's peak; locked targets stay"),
               QObject::tr("Diagonal targets"), TargetPreset::Diagonal);
     m_entries << menu.add("targetsAsNow", QObject::tr("&As now"), {},
-                          QObject::tr("The VWS that each feature has now: the picture stays as it is"),
+                          QObject::tr("The attention that each feature has now: the picture stays as it is"),
                           [&services] { setTargetsAsNow(services); }, {.enabled = [&services, editable] {
                               return editable() && services.results().vwsIsCurrent();
                           }});

@@ -69,18 +69,18 @@ void addViewActions(Services& services) {
     menu.add(
         "resetViewAction", QObject::tr("&Reset"), "Home", QObject::tr("The view that the volume opened with"),
         [&store] { resetView(store); }, inToolBar);
-    menu.separate();
+    ActionMenu sides(services.actions(), QObject::tr("&View") + "/" + QObject::tr("&Look from"), open);
     for (const ViewText& v : kViews) {
         const QString number = QString::number(&v - kViews + 1);
-        menu.add("view" + number, QObject::tr(v.file), number, {},
-                 [&store, view = v.view] { setStandardView(store, view); },
-                 {.say =
-                      [&store, &v] {
-                          return isOfPatient(store) ? QObject::tr(v.tip)
-                                                    : QObject::tr("Look from this side of the file's axes");
-                      },
-                  .caption = [&store, &v] { return QObject::tr(isOfPatient(store) ? v.patient : v.file); },
-                  .inToolBar = true});
+        sides.add("view" + number, QObject::tr(v.file), number, {},
+                  [&store, view = v.view] { setStandardView(store, view); },
+                  {.say =
+                       [&store, &v] {
+                           return isOfPatient(store) ? QObject::tr(v.tip)
+                                                     : QObject::tr("Look from this side of the file's axes");
+                       },
+                   .caption = [&store, &v] { return QObject::tr(isOfPatient(store) ? v.patient : v.file); },
+                   .inToolBar = true});
     }
     menu.separate();
     const auto isPerspective = [&store] { return store.scene().camera.projection == Projection::Perspective; };
@@ -91,18 +91,18 @@ void addViewActions(Services& services) {
             setProjection(store, isPerspective() ? Projection::Orthographic : Projection::Perspective);
         },
         true);
-    menu.separate();
-    menu.add("undoViewAction", QObject::tr("&Previous view"), "Alt+Left",
-             QObject::tr("Where the camera was before its last move"), [&store] { store.undoCamera(); },
-             {.enabled = [&store] { return store.canUndoCamera(); }});
-    menu.add("redoViewAction", QObject::tr("&Next view"), "Alt+Right", {}, [&store] { store.redoCamera(); },
-             {.enabled = [&store] { return store.canRedoCamera(); }});
+    sides.separate();
+    sides.add("undoViewAction", QObject::tr("&Previous view"), "Alt+Left",
+              QObject::tr("Where the camera was before its last move"), [&store] { store.undoCamera(); },
+              {.enabled = [&store] { return store.canUndoCamera(); }});
+    sides.add("redoViewAction", QObject::tr("&Next view"), "Alt+Right", {}, [&store] { store.redoCamera(); },
+              {.enabled = [&store] { return store.canRedoCamera(); }});
 }
 
 QAction& addClipHandlesAction(Services& services) {
     const auto shown = std::make_shared<bool>(false);
-    ActionMenu menu(services.actions(), QObject::tr("&View"), [&services] { return services.store().hasVolume(); });
-    menu.separate();
+    ActionMenu menu(services.actions(), QObject::tr("&View") + "/" + QObject::tr("Cl&ip"),
+                    [&services] { return services.store().hasVolume(); });
     return *menu.addCheck(
         "clipHandlesAction", QObject::tr("Clip &handles"), "C",
         QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with Shift the "

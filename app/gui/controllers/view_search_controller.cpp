@@ -10,6 +10,7 @@
 #include "render/view_direction.h"
 #include "services/services.h"
 #include "tf/shown_tf.h"
+#include "widgets/terms.h"
 
 namespace pellucid::gui {
 
@@ -81,7 +82,7 @@ ViewSearchController::~ViewSearchController() { ++m_number; }
 void ViewSearchController::addActions() {
     const auto ready = [this] { return m_services.store().hasVolume() && !m_services.scene().tf.features.empty(); };
     m_services.actions().add(
-        tr("&View"), "goToBestViewAction", tr("Go to the &best view"), "Shift+B",
+        tr("&View") + "/" + tr("&Look from"), "goToBestViewAction", tr("Go to the &best view"), "Shift+B",
         tr("The view that the panel Best view has found; where it has found none, it is looked for first"),
         [this] { goToBest(); }, ready);
     m_services.actions().add(
@@ -257,10 +258,10 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
     const std::string kept = keptText(found.result);
     m_optimizing.say((kept.empty() ? QString() : QString::fromStdString(kept) + ' ') +
                      (found.result.converged()
-                          ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
-                          : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: F = %3, from %4."))
-                         .arg(degrees(angles.azimuth), degrees(angles.elevation),
-                              QString::number(best.objective, 'f', 4), QString::number(start.objective, 'f', 4)));
+                          ? tr("On target from azimuth %1°, elevation %2°: %3, from %4.")
+                          : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: %3, from %4."))
+                         .arg(degrees(angles.azimuth), degrees(angles.elevation), terms().offTarget(best.objective),
+                              terms().distanceText(start.objective)));
 }
 
 } // namespace pellucid::gui

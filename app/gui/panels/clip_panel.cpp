@@ -29,7 +29,7 @@ void addPlane(Services& services, QAction& handles) {
 }
 
 void clipNothing(Services& services) {
-    services.store().edit(QObject::tr("Whole box"), {}, [](Session& session) { session.clipping.set({}); });
+    services.store().edit(QObject::tr("Remove clipping"), {}, [](Session& session) { session.clipping.set({}); });
 }
 
 class ClipPanel : public QWidget {
@@ -58,7 +58,8 @@ private:
     QPushButton* m_add =
         named(new QPushButton(tr("&Add plane"), this), "addPlaneButton",
               tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
-    QPushButton* m_reset = named(new QPushButton(tr("&Whole box"), this), "resetClipButton", tr("Cut nothing away"));
+    QPushButton* m_reset =
+        named(new QPushButton(tr("&Remove clipping"), this), "resetClipButton", tr("Cut nothing away"));
 };
 
 ClipPanel::ClipPanel(Services& services, QAction& handles, QWidget* parent) : QWidget(parent), m_services(services) {
@@ -203,15 +204,15 @@ void ClipPanel::follow() {
 
 QWidget* makePanel(Services& services, QAction& handles, QWidget* parent) {
     services.actions().add(
-        QObject::tr("&View"), "addPlaneAction", QObject::tr("Add clip p&lane"), "Shift+C",
+        QObject::tr("&View") + "/" + QObject::tr("Cl&ip"), "addPlaneAction", QObject::tr("Add clip p&lane"), "Shift+C",
         QObject::tr("Cut away what is nearer than the middle of the volume"),
         [&services, &handles] { addPlane(services, handles); },
         [&services] {
             return services.isEditable() && services.scene().session.clipping->planes.size() < kMostClipPlanes;
         });
     services.actions().add(
-        QObject::tr("&View"), "resetClipAction", QObject::tr("&Whole box"), {}, QObject::tr("Cut nothing away"),
-        [&services] { clipNothing(services); },
+        QObject::tr("&View") + "/" + QObject::tr("Cl&ip"), "resetClipAction", QObject::tr("&Remove clipping"), {},
+        QObject::tr("Cut nothing away"), [&services] { clipNothing(services); },
         [&services] { return services.isEditable() && !services.scene().session.clipping->isNone(); });
     return new ClipPanel(services, handles, parent);
 }

@@ -221,6 +221,7 @@ void ComparePanel::follow() {
 PanelInfo comparePanel() {
     return {.id = "compare",
             .title = QObject::tr("Compare"),
+            .group = PanelGroup::Shares,
             .visible = false,
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+Alt+C"),

@@ -21,6 +21,7 @@
 #include "widgets/layouts.h"
 #include "widgets/number_text.h"
 #include "widgets/plot_view.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -45,8 +46,9 @@ QIcon swatch(const QColor& color) {
 Rgb colorOf(const Run& run) { return curveColor(static_cast<std::size_t>(std::max(0, run.number - 1))); }
 
 QString tipOf(const Run& run) {
-    QStringList lines{QObject::tr("F %1, from %2; %3")
-                          .arg(shortNumber(run.after), shortNumber(run.before), QString::fromStdString(run.ended))};
+    QStringList lines{
+        QObject::tr("%1, from %2; %3")
+            .arg(terms().offTarget(run.after), terms().distanceText(run.before), QString::fromStdString(run.ended))};
     const auto coarse =
         std::count_if(run.history.begin(), run.history.end(), [](const auto& s) { return s.level > 0; });
     const auto others = static_cast<std::ptrdiff_t>(run.history.size()) - 1 - run.iterations - coarse;
@@ -72,26 +74,27 @@ void changeRuns(Services& services, const QString& text, const std::function<voi
 } // namespace
 
 PanelInfo convergencePanel() {
-    return {.id = "convergence",
-            .title = QObject::tr("Convergence"),
-            .area = Qt::BottomDockWidgetArea,
-            .visible = false,
-            .tabOf = "tf",
-            .keys = QKeySequence("Ctrl+Shift+C"),
-            .tip = QObject::tr("How optimizations go: distance, VWS and opacities over the moves; runs compared"),
-            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
-                services.actions().add(
-                    QObject::tr("&Transfer function"), "showConvergence",
-                    QObject::tr("Con&vergence of the optimization"), {},
-                    QObject::tr("Distance, VWS and opacities over the moves"),
-                    [&services] { services.panels().show("convergence"); },
-                    [&services] { return services.store().hasVolume(); });
-                services.actions().addGestures(
-                    {{QObject::tr("Convergence"), QObject::tr("Click on a dot"), QObject::tr("show that move")},
-                     {QObject::tr("Convergence"), QObject::tr("Double-click"), QObject::tr("export")},
-                     {QObject::tr("Convergence"), "F2, Del", QObject::tr("rename, delete the run")}});
-                return new ConvergencePanel(services, controllers.optimizing, controllers.saving, parent);
-            }};
+    return {
+        .id = "convergence",
+        .title = QObject::tr("Convergence"),
+        .group = PanelGroup::Shares,
+        .area = Qt::BottomDockWidgetArea,
+        .visible = false,
+        .tabOf = "tf",
+        .keys = QKeySequence("Ctrl+Shift+C"),
+        .tip = QObject::tr("How optimizations go: distance from the targets, attention and opacities over the moves"),
+        .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+            services.actions().add(
+                QObject::tr("&Transfer function"), "showConvergence", QObject::tr("Con&vergence of the optimization"),
+                {}, QObject::tr("Distance from the targets, attention and opacities over the moves"),
+                [&services] { services.panels().show("convergence"); },
+                [&services] { return services.store().hasVolume(); });
+            services.actions().addGestures(
+                {{QObject::tr("Convergence"), QObject::tr("Click on a dot"), QObject::tr("show that move")},
+                 {QObject::tr("Convergence"), QObject::tr("Double-click"), QObject::tr("export")},
+                 {QObject::tr("Convergence"), "F2, Del", QObject::tr("rename, delete the run")}});
+            return new ConvergencePanel(services, controllers.optimizing, controllers.saving, parent);
+        }};
 }
 
 ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optimizing, SaveController& saving,

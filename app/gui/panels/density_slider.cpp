@@ -59,7 +59,7 @@ DensitySlider::DensitySlider(Services& services, QWidget* parent)
     m_all->setCheckable(true);
     auto* label = new QLabel(tr("&Density"), this);
     label->setBuddy(m_slider);
-    label->setToolTip(tr("How strong the picture is, in % of alpha"));
+    label->setToolTip(tr("How solid the picture is, in % opaque"));
     setLayout(inset(rowOf({label, {m_slider, 1}, m_value, m_all}, 6), {}));
     connect(m_slider, &QSlider::valueChanged, this, &DensitySlider::follow);
     connect(m_slider, &QSlider::sliderPressed, this, [this] {
@@ -229,23 +229,24 @@ void DensitySlider::rest() {
         if (measures && measures->coverage && m_services.results().measuresAreCurrent())
             coverage = measures->coverage->coverage;
         showCoverage(coverage);
-        tip = tr("Stronger or fainter with the same shares of saliency (VWS), from this camera.\n"
+        tip = tr("Stronger or fainter with the same shares of attention (VWS), from this camera.\n"
                  "Escape cancels a drag");
         if (m_job.isRunning())
             tip += tr("\nFinding the opacities of equal shares …");
         else if (m_curve && m_curve->curve.isPoint())
             tip += tr("\nLocks and bounds leave one picture with these shares");
         else if (m_curve)
-            tip += tr("\nWith these shares: from %1 to %2 of alpha, mean over the pixels whose rays meet a feature "
+            tip += tr("\nWith these shares: from %1 to %2 opaque, mean over the pixels whose rays meet a feature "
                       "that is drawn")
                        .arg(textOf(m_curve->curve.faintest().coverage.coverage),
                             textOf(m_curve->curve.strongest().coverage.coverage));
     }
     m_slider->setToolTip(tip);
-    QString value = tr("Coverage: mean alpha of the pixels that show a feature");
+    QString value =
+        tr("How solid the picture is: mean opacity of the pixels that show a feature (coverage, mean alpha)");
     if (measures && measures->coverage && measures->coverage->covers.size() == m_services.scene().tf.features.size())
         for (std::size_t f = 0; f < measures->coverage->covers.size(); ++f)
-            value += tr("\n%1: %2 of alpha where it is seen")
+            value += tr("\n%1: %2 opaque where it is seen")
                          .arg(QString::fromStdString(m_services.scene().tf.features[f].name),
                               textOf(measures->coverage->covers[f]));
     m_value->setToolTip(value);

@@ -5,6 +5,7 @@
 #include "tf/edit.h"
 #include "tf/shapes.h"
 #include "widgets/number_text.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -18,13 +19,29 @@ const std::array<std::pair<const char*, const char*>, FeaturesModel::ColumnCount
      QT_TR_NOOP("Name and colour of the feature; click the colour to change it, double-click the name")},
     {QT_TR_NOOP("Values"), QT_TR_NOOP("Values of the feature's voxels, in the unit of the data")},
     {QT_TR_NOOP("Opacity"), QT_TR_NOOP("Highest opacity of the feature: opacity of a path one voxel long (d0)")},
-    {QT_TR_NOOP("Visibility"), QT_TR_NOOP("The feature's share of the picture, 0 to 1, from this camera")},
-    {QT_TR_NOOP("VWS"),
-     QT_TR_NOOP("Visibility-weighted saliency: the feature's share of what catches the eye, 0 to 1")},
-    {QT_TR_NOOP("Target"), QT_TR_NOOP("The share of saliency that Optimize aims at; all targets add up to 1")},
-    {QT_TR_NOOP("2DFS"),
-     QT_TR_NOOP(
-         "2D feature saliency: the feature's share of what catches the eye in the picture that is shown, 0 to 1")}};
+    {"", QT_TR_NOOP("How much of the picture the feature makes up from this camera, 0 to 1.\n"
+                    "Visibility: what its voxels show of themselves, divided by what all voxels show")},
+    {"", QT_TR_NOOP("How much of what catches the eye belongs to the feature, 0 to 1.\n"
+                    "Visibility-weighted saliency, VWS: the sum of visibility × saliency over its voxels, divided\n"
+                    "by that over all voxels")},
+    {QT_TR_NOOP("Target"), QT_TR_NOOP("The share of attention that Optimize aims at; all targets add up to 1")},
+    {"", QT_TR_NOOP("How much of what catches the eye in the picture on the screen belongs to the feature, 0 to 1.\n"
+                    "2D feature saliency, 2DFS: the feature's part of the picture's saliency map")}};
+
+/// What a column is called.
+QString titleOf(int column) {
+    switch (column) {
+    case FeaturesModel::Visibility:
+        return terms().visibility();
+    case FeaturesModel::Vws:
+        return terms().attention();
+    case FeaturesModel::PictureShare:
+        return terms().pictureSaliency();
+    default:
+        const char* const title = kHeaders.at(static_cast<std::size_t>(column)).first;
+        return *title == 0 ? QString() : FeaturesModel::tr(title);
+    }
+}
 
 bool isLimited(const OpacityLimits& limits) { return limits.lowest > 0 || limits.highest < 1; }
 
@@ -34,6 +51,7 @@ FeaturesModel::FeaturesModel(SessionStore& store, Results& results, QObject* par
     : QAbstractTableModel(parent), m_store(store), m_results(results) {
     connect(&store, &SessionStore::changed, this, &FeaturesModel::follow);
     connect(&results, &Results::changed, this, [this] { refresh(Visibility, Vws); });
+    connect(&terms(), &Terms::changed, this, [this] { Q_EMIT headerDataChanged(Qt::Horizontal, 0, ColumnCount - 1); });
     follow({}, store.scene());
 }
 
@@ -139,9 +157,7 @@ QVariant FeaturesModel::headerData(int section, Qt::Orientation orientation, int
     const bool known = role == Qt::DisplayRole || role == Qt::ToolTipRole;
     if (orientation != Qt::Horizontal || section < 0 || section >= ColumnCount || !known)
         return QAbstractTableModel::headerData(section, orientation, role);
-    const auto& [name, tip] = kHeaders[static_cast<std::size_t>(section)];
-    const char* const text = role == Qt::DisplayRole ? name : tip;
-    return *text == 0 ? QString() : tr(text);
+    return role == Qt::DisplayRole ? titleOf(section) : tr(kHeaders[static_cast<std::size_t>(section)].second);
 }
 
 Qt::ItemFlags FeaturesModel::flags(const QModelIndex& index) const {

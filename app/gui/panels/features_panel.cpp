@@ -28,6 +28,7 @@
 #include "widgets/layouts.h"
 #include "widgets/lock_mark.h"
 #include "widgets/opacity_editor.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -197,7 +198,7 @@ private:
         button(tr("&Refine"), "refineButton",
                tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this);
     QPushButton* m_optimize = button(tr("&Optimize"), "optimizeButton",
-                                     tr("Change the features' opacities until their saliency (VWS) meets the targets,\n"
+                                     tr("Change the features' opacities until their attention meets the targets,\n"
                                         "as seen from this camera"),
                                      this);
     QPushButton* m_cancel =
@@ -205,8 +206,10 @@ private:
     QPushButton* m_undo = button(tr("Undo"), "undoButton", tr("Undo the last change (Ctrl+Z)"), this);
     QPushButton* m_redo = button(tr("Redo"), "redoButton", tr("Redo the change that was undone (Ctrl+Shift+Z)"), this);
     QProgressBar* m_progress = progressBar("optimizeProgress", this, 1000);
-    QLabel* m_distance = withAnyWidth(
-        named(new QLabel(this), "distanceLabel", tr("F: root of the mean squared difference between VWS and targets")));
+    QLabel* m_distance =
+        withAnyWidth(named(new QLabel(this), "distanceLabel",
+                           tr("How far the features' attention lies from the targets.\n"
+                              "F, the root mean square of VWS − target over the features; 1 is 100 %")));
     QLabel* m_message = withAnyWidth(wrappedLabel("panelMessage", this));
 };
 
@@ -258,6 +261,10 @@ FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidg
     connect(&m_services.store(), &SessionStore::changed, this, &FeaturesPanel::follow);
     connect(&m_services.store(), &SessionStore::historyChanged, this, &FeaturesPanel::follow);
     connect(&m_services.results(), &Results::changed, this, &FeaturesPanel::follow);
+    connect(&terms(), &Terms::changed, this, [this] {
+        follow();
+        m_bars->update();
+    });
     adjustTable();
     followRun();
     showMessage();
@@ -426,9 +433,8 @@ void FeaturesPanel::followRun() {
         // Moves are those on the volume, as in the message at the end and in the list of runs.
         const std::vector<OptimizeState>& history = run.underWay()->history;
         const auto whole = std::count_if(history.begin(), history.end(), [](const auto& s) { return s.level == 0; });
-        m_progress->setFormat(
-            (history.back().level == 0 ? tr("move %1, F = %2").arg(whole - 1) : tr("along rays, F ≈ %1"))
-                .arg(run.objective(), 0, 'f', 4));
+        m_progress->setFormat((history.back().level == 0 ? tr("move %1, %2").arg(whole - 1) : tr("coarse, %1"))
+                                  .arg(terms().offTarget(run.objective())));
     }
     m_optimize->setVisible(!on);
     m_cancel->setVisible(on);
@@ -465,7 +471,9 @@ void FeaturesPanel::follow() {
     if (results.state() == Results::State::Failed) {
         m_distance->setText(tr("Not measured: %1").arg(QString::fromStdString(results.failure()->problem())));
     } else if (const auto f = results.objective()) {
-        m_distance->setText(tr("Distance from the targets: F = %1").arg(*f, 0, 'f', 4));
+        QString text = terms().offTarget(*f);
+        text[0] = text[0].toUpper();
+        m_distance->setText(text);
     } else {
         m_distance->setText(store.hasVolume() && features ? tr("Measuring…") : QString());
     }
@@ -476,7 +484,8 @@ void FeaturesPanel::follow() {
 PanelInfo featuresPanel() {
     return {.id = "features",
             .title = QObject::tr("Features"),
-            .size = 380,
+            .group = PanelGroup::Shares,
+            .size = 300,
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {

@@ -63,7 +63,7 @@ private:
     QLineEdit* m_top = named(new QLineEdit(this), "fieldTop",
                              tr("Value of the field that the colours reach to, above 0; in the unit of the field"));
     QPushButton* m_usualTop =
-        named(new QPushButton(tr("&Usual"), this), "fieldUsualTop",
+        named(new QPushButton(tr("&Default"), this), "fieldUsualTop",
               tr("The value below which lie 99.9 % of the field's values above 0, in the voxels of all features"));
     QPushButton* m_stop = named(new QPushButton(this), "fieldStop");
     QPushButton* m_save = named(new QPushButton(tr("Sa&ve…"), this), "fieldSave",
@@ -93,7 +93,7 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
     });
     connect(m_top, &QLineEdit::editingFinished, this, &FieldsPanel::editTop);
     connect(m_usualTop, &QPushButton::clicked, this,
-            [this] { edit(tr("Usual top of the field"), [](FieldView& f) { f.top.reset(); }); });
+            [this] { edit(tr("Default top of the field"), [](FieldView& f) { f.top.reset(); }); });
     connect(m_stop, &QPushButton::clicked, this,
             [this] { m_fields.state() == FieldController::State::Computing ? m_fields.cancel() : m_fields.compute(); });
     connect(m_save, &QPushButton::clicked, this, [this] { m_fields.chooseFile(); });
@@ -119,7 +119,7 @@ void FieldsPanel::fillLists() {
         m_colorMap->setItemIcon(m_colorMap->count() - 1, iconOf(map));
     }
     addItem(*m_colorMap, tr("of the feature"), QString::fromLatin1(kFeatureColorMap),
-            tr("Black over the colour of the chosen feature to white; of all features, the usual map"));
+            tr("Black over the colour of the chosen feature to white; of all features, the default map"));
 }
 
 void FieldsPanel::addRows(QFormLayout& form) {
@@ -216,10 +216,11 @@ void FieldsPanel::followField() {
 PanelInfo fieldsPanel() {
     return {.id = "fields",
             .title = QObject::tr("Fields"),
+            .group = PanelGroup::Shares,
             .visible = false,
             .tabOf = "display",
             .keys = QKeySequence("Shift+V"),
-            .tip = QObject::tr("Visibility, saliency and VWS of each voxel in the place of the data"),
+            .tip = QObject::tr("Visibility, saliency and attention (VWS) of each voxel in the place of the data"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
                 return new FieldsPanel(services, controllers.fields, parent);
             }};

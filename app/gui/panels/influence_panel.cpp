@@ -61,7 +61,7 @@ private:
 
 InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)
     : QWidget(parent), m_store(store), m_results(results) {
-    addItem(*m_what, tr("How fast each VWS (rows) follows each opacity (columns)"), {},
+    addItem(*m_what, tr("How fast attention (rows) follows each opacity (columns)"), {},
             tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
                "from this view and at the present opacities"));
     addItem(*m_what, tr("How much of a feature (rows) another one hides (columns)"), {},
@@ -145,7 +145,7 @@ void InfluencePanel::rebuild() {
             header->setData(Qt::DecorationRole, colorFromRgb(feature.color));
             const bool influence = m_what->currentIndex() == 0;
             header->setToolTip(side == Qt::Vertical
-                                   ? (influence ? tr("VWS of %1") : tr("How much %1 is hidden")).arg(name)
+                                   ? (influence ? tr("Attention on %1 (VWS)") : tr("How much %1 is hidden")).arg(name)
                                    : (influence ? tr("Opacity of %1") : tr("What %1 hides")).arg(name));
             side == Qt::Vertical ? m_table->setVerticalHeaderItem(i, header)
                                  : m_table->setHorizontalHeaderItem(i, header);
@@ -174,7 +174,7 @@ QString InfluencePanel::cellText(double value) const {
 QString InfluencePanel::cellTip(int row, int column, double value) const {
     const QString of = m_table->verticalHeaderItem(row)->text(), by = m_table->horizontalHeaderItem(column)->text();
     if (m_what->currentIndex() == 0)
-        return tr("Raising the opacity of %1 by 0.01 changes the VWS of %2 by about %3")
+        return tr("Raising the opacity of %1 by 0.01 changes the attention on %2 (VWS) by about %3")
             .arg(by, of, signedText(0.01 * value, 3));
     if (row == column) return tr("A feature does not hide itself here");
     return tr("%1 hides %2 % of the visibility of %3").arg(by).arg(100 * value, 0, 'f', 1).arg(of);
@@ -229,9 +229,10 @@ void InfluencePanel::copy() const {
 PanelInfo influencePanel() {
     return {.id = "influence",
             .title = QObject::tr("Influence"),
+            .group = PanelGroup::Shares,
             .visible = false, // costs a sweep more
             .keys = QKeySequence("Ctrl+I"),
-            .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
+            .tip = QObject::tr("How attention follows each opacity, and which feature hides which"),
             .make = [](Services& services, Controllers&, QWidget* parent) {
                 services.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
                 Results& results = services.results();

@@ -96,6 +96,7 @@ void PictureSaliencyPanel::follow() {
 PanelInfo pictureSaliencyPanel() {
     return {.id = "pictureSaliency",
             .title = QObject::tr("2D saliency"),
+            .group = PanelGroup::Shares,
             .visible = false,
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+Alt+D"),

@@ -150,7 +150,7 @@ private:
                               tr("How the transfer function follows the frames\n"
                                  "static: the keys, and what lies between them\n"
                                  "refine: that of the frame before, refined by entropy, priorities included\n"
-                                 "optimize: opacities bring VWS to the targets in every frame"));
+                                 "optimize: opacities bring attention to the targets in every frame"));
     QSlider* m_coherence =
         named(new QSlider(Qt::Horizontal, this), "coherence",
               tr("Coherence, 0 to ∞, without unit: how much jumps of the transfer function from frame to\n"
@@ -241,7 +241,7 @@ QLayout* PlayerPanel::adaptRow() {
                                                     {"targetKey", tr("○ Targets")},
                                                     {"previousKey", tr("‹ key")},
                                                     {"nextKey", tr("key ›")},
-                                                    {"fromHere", tr("From here on")}};
+                                                    {"fromHere", tr("Start from this frame")}};
     for (qsizetype i = 0; i < m_adapting.keyActions().size(); ++i)
         row->addWidget(button(*m_adapting.keyActions()[i], keys[i].first, {}, keys[i].second));
     connect(m_adapt.stop, &QToolButton::clicked, this,
@@ -354,6 +354,7 @@ void PlayerPanel::followMarks() {
 PanelInfo playerPanel() {
     return {.id = "player",
             .title = QObject::tr("Time"),
+            .group = PanelGroup::Time,
             .area = Qt::BottomDockWidgetArea,
             .visible = false,
             .below = "tf",

@@ -180,7 +180,7 @@ void ProbePanel::refreshText() {
     const double span = volume.range().hi - volume.range().lo, size = 2 * volume.geometry().radius();
     const auto value = m_probe.valueAtPlace();
     const Vec3& p = m_probe.place();
-    QString text = tr("alpha %1").arg(percent(ray.alpha));
+    QString text = tr("%1 opaque").arg(percent(ray.alpha));
     text += tr(" · value %1").arg(value ? numberText(*value, span) : tr("invalid"));
     text += tr(" · at %1, %2, %3").arg(numberText(p.x, size), numberText(p.y, size), numberText(p.z, size));
     if (volume.geometry().worldAxes == WorldAxes::Patient) text += tr(" mm");

@@ -226,7 +226,7 @@ bool ProbeShares::event(QEvent* event) {
         const int row = rowAt(at);
         if (row < 0) return QString();
         const Row of = rows()[static_cast<std::size_t>(row)];
-        return tr("%1 makes %2 of this pixel; all rows together make its alpha. Click: select it")
+        return tr("%1 makes %2 of this pixel; all rows together make its opacity (alpha). Click: select it")
             .arg(of.feature >= 0 ? nameOf(m_probe, of.feature) : tr("What is in no feature"), of.text);
     };
     return showsTip(*event, *this, textAt) || QWidget::event(event);

@@ -22,7 +22,7 @@ constexpr double kMargin = 10;
 /// The energy over the iterations; empty where there is none above 0. `isPresent`: what came of it is still shown.
 Plot energyPlot(const RefineResult& result, bool isPresent) {
     Plot plot{.title = QObject::tr("Energy of the edges").toStdString(),
-              .x = {.label = QObject::tr("iteration").toStdString(), .whole = true},
+              .x = {.label = QObject::tr("step").toStdString(), .whole = true},
               .y = {.label = {}, .logarithmic = true},
               .series = {}};
     double least = 0, most = 0;
@@ -48,6 +48,8 @@ Plot energyPlot(const RefineResult& result, bool isPresent) {
 PanelInfo refinePanel() {
     return {.id = "refine",
             .title = QObject::tr("Refinement"),
+            .group = PanelGroup::Shares,
+            .visible = false,
             .tabOf = "features",
             .keys = QKeySequence("Ctrl+Shift+R"),
             .tip = QObject::tr("Opacities by entropy: how, for what, and what came of it"),
@@ -291,7 +293,7 @@ void RefinePanel::showOutcome() {
     QString evenness = evennessText(result.energyMovableBefore, result.energyMovableAfter);
     evenness[0] = evenness[0].toUpper();
     m_figures->setText(
-        tr("%1: energy %2, from %3, in %L4 iterations%5")
+        tr("%1: energy %2, from %3, in %L4 steps%5")
             .arg(evenness, shortNumber(result.energyMovableAfter), shortNumber(result.energyMovableBefore))
             .arg(result.iterations)
             .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")) +
@@ -310,9 +312,8 @@ void RefinePanel::showNote(const Refinement* refinement) {
     m_note->setVisible(!sentences.isEmpty());
     m_help->setVisible(dark && dark->help != Darkening::Help::None);
     if (!dark) return;
-    m_help->setText(dark->help == Darkening::Help::Exact
-                        ? tr("Refine by Exact instead")
-                        : tr("Stop after %L1 iterations instead").arg(dark->iterations));
+    m_help->setText(dark->help == Darkening::Help::Exact ? tr("Refine by Exact instead")
+                                                         : tr("Stop after %L1 steps instead").arg(dark->iterations));
     m_help->setEnabled(refinement == m_refining.current() && !m_services.isReadOnly());
 }
 

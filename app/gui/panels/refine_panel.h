@@ -95,7 +95,7 @@ private:
     QPushButton* m_help = named(new QPushButton(this), "refineHelpButton"); ///< keeps the picture from getting dark
     EdgeBars* m_edges = named(new EdgeBars(this), "refineEdges");
     PlotView* m_plot = named(new PlotView(this), "refineCurve",
-                             tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
+                             tr("Energy, the variance of the edge weights, over the steps; logarithmic"));
     RestTimer m_wait{300, [this] { compare(); }}; ///< before the methods are compared
     Job<Comparing, RefineComparison> m_compare;
 };

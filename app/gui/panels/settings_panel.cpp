@@ -1,4 +1,5 @@
 // How figures are computed and how optimizations search: all settings that they depend on, as edits of the session.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QPushButton>
 
@@ -9,6 +10,7 @@
 #include "services/services.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -113,12 +115,34 @@ void addMeasuring(Services& services, OpenController& opening, QFormLayout& form
     for (SettingRows* rows : {saliency, shares, engine}) rows->follow();
 }
 
+/// What figures are called: a choice of this machine, and always the scientific names with the published profile.
+void addNames(Services& services, QFormLayout& form) {
+    addHeading(form, QObject::tr("Words"));
+    auto* box =
+        named(new QCheckBox(QObject::tr("Scientific names")), "scientificNamesCheck",
+              QObject::tr("Figures are called VWS, F, visibility and 2DFS in place of attention, off target, seen\n"
+                          "and in the picture. Always so with the published profile"));
+    form.addRow(box);
+    QObject::connect(box, &QCheckBox::toggled, box, [](bool on) { terms().choose(on); });
+    const auto follow = [&services, box] {
+        const bool published = services.scene().session.measure->profile == Profile::Published;
+        terms().setPublished(published);
+        const QSignalBlocker quiet(box);
+        box->setChecked(terms().areScientific());
+        box->setEnabled(!published);
+    };
+    QObject::connect(&services.store(), &SessionStore::changed, box, follow);
+    QObject::connect(&terms(), &Terms::changed, box, follow);
+    follow();
+}
+
 QWidget* makePanel(Services& services, OpenController& opening, QWidget* parent) {
     auto* panel = named(new QWidget(parent), "settingsPanel");
     QFormLayout* const form = scrolledForm(panel, 5);
     form->setFieldGrowthPolicy(QFormLayout::ExpandingFieldsGrow);
     addOptimization(services, *form);
     addMeasuring(services, opening, *form);
+    addNames(services, *form);
     return panel;
 }
 
@@ -127,6 +151,8 @@ QWidget* makePanel(Services& services, OpenController& opening, QWidget* parent)
 PanelInfo settingsPanel() {
     return {.id = "settings",
             .title = QObject::tr("Settings"),
+            .group = PanelGroup::Files,
+            .visible = false,
             .tabOf = "features",
             .keys = QKeySequence("Ctrl+8"),
             .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),

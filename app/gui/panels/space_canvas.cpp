@@ -9,6 +9,7 @@
 #include "widgets/image_convert.h"
 #include "widgets/mark_painter.h"
 #include "widgets/number_text.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -170,10 +171,10 @@ void SpaceCanvas::readAt(const QPointF& at) {
     const auto textOf = [&](const std::vector<double>& x, const std::vector<double>& w, double objective) {
         QStringList parts;
         for (const std::size_t f : m_space->axes.features)
-            parts << tr("%1: opacity %2, W %3")
+            parts << tr("%1: opacity %2, attention %3")
                          .arg(QString::fromStdString(view.names[f]), QString::number(x[f], 'g', 3),
                               QString::number(w[f], 'f', 3));
-        return parts.join("; ") + tr("; F %1").arg(QString::number(objective, 'f', 4));
+        return parts.join("; ") + "; " + terms().offTarget(objective);
     };
     if (const auto found = pathStateAt(*m_space, view, pixel, kReach)) {
         const SpacePath& path = view.paths[found->path];

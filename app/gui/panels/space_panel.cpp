@@ -15,6 +15,7 @@
 #include "store/edits.h"
 #include "tf/shown_tf.h"
 #include "widgets/layouts.h"
+#include "widgets/terms.h"
 
 namespace pellucid::gui {
 namespace {
@@ -38,9 +39,11 @@ TransferFunction shapesOf(const TransferFunction& tf) {
 PanelInfo spacePanel() {
     return {.id = "space",
             .title = QObject::tr("Parameter space"),
+            .group = PanelGroup::Shares,
             .visible = false,
             .keys = QKeySequence("Ctrl+Shift+P"),
-            .tip = QObject::tr("VWS and the distance from the targets over the opacities of two or three features"),
+            .tip =
+                QObject::tr("Attention and the distance from the targets over the opacities of two or three features"),
             .make = [](Services& services, Controllers&, QWidget* parent) {
                 services.actions().addGestures(
                     {{QObject::tr("Parameter space"), QObject::tr("drag, wheel"), QObject::tr("turn, zoom")},
@@ -111,7 +114,7 @@ SpacePanel::SpacePanel(Services& services, QWidget* parent)
     connect(m_cancel, &QPushButton::clicked, this, &SpacePanel::cancel);
     connect(m_least, &QPushButton::clicked, this, [this] {
         if (isCurrent())
-            apply(m_space->opacitiesAt(m_space->positionOfSample(m_space->best)), tr("Least F of the grid"));
+            apply(m_space->opacitiesAt(m_space->positionOfSample(m_space->best)), tr("Nearest to the targets"));
     });
     connect(m_save, &QToolButton::clicked, this, &SpacePanel::save);
     connect(m_samples, &QSpinBox::valueChanged, this, &SpacePanel::refresh);
@@ -201,10 +204,10 @@ void SpacePanel::fillFeatures() {
     const QSignalBlocker quiet(m_shown);
     const int before = m_shown->count() > 0 ? m_shown->currentData().toInt() : kObjective;
     m_shown->clear();
-    m_shown->addItem(tr("F: distance from the targets"), kObjective);
+    m_shown->addItem(tr("Distance from the targets"), kObjective);
     for (const int f : shown)
-        m_shown->addItem(tr("W of %1").arg(QString::fromStdString(scene.tf.features[static_cast<std::size_t>(f)].name)),
-                         f);
+        m_shown->addItem(
+            tr("Attention on %1").arg(QString::fromStdString(scene.tf.features[static_cast<std::size_t>(f)].name)), f);
     m_shown->setCurrentIndex(std::max(0, m_shown->findData(before)));
 }
 
@@ -299,9 +302,9 @@ QString SpacePanel::words(bool hasTwo, bool running, bool current) const {
     for (const std::size_t f : m_space->axes.features)
         places << QStringLiteral("%1 %2").arg(QString::fromStdString(m_services.scene().tf.features[f].name),
                                               QString::number(x[f], 'g', 3));
-    QString text = tr("Least F of %L1 samples: %2, at %3.")
+    QString text = tr("Nearest to the targets of %L1 samples: %2, at %3.")
                        .arg(m_space->evaluations)
-                       .arg(QString::number(m_space->objective[m_space->best], 'f', 4), places.join(", "));
+                       .arg(terms().offTarget(m_space->objective[m_space->best]), places.join(", "));
     if (m_usedFactor > 1) text += tr(" Of a copy of the volume that is coarser by %1.").arg(m_usedFactor);
     return text;
 }

@@ -89,12 +89,12 @@ private:
                                    "Automatic: coarser where the whole would take long"));
     QComboBox* m_shown =
         named(new QComboBox(this), "spaceShown",
-              tr("F: distance from the targets, 0 is on target; W: the share of saliency (VWS) of a feature, 0 to 1"));
-    QPushButton* m_compute =
-        named(new QPushButton(tr("&Compute"), this), "spaceCompute", tr("Samples VWS and F, from this camera"));
+              tr("The distance from the targets (F; 0 is on target), or the attention on a feature (VWS, 0 to 1)"));
+    QPushButton* m_compute = named(new QPushButton(tr("&Compute"), this), "spaceCompute",
+                                   tr("Samples attention (VWS) and distance from the targets (F), from this camera"));
     QPushButton* m_cancel = named(new QPushButton(tr("Cancel"), this), "spaceCancel");
-    QPushButton* m_least = named(new QPushButton(tr("&Go to the least F"), this), "spaceLeast",
-                                 tr("Sets the opacities of the sample with the least F"));
+    QPushButton* m_least = named(new QPushButton(tr("&Go to the nearest"), this), "spaceLeast",
+                                 tr("Sets the opacities of the sample that is nearest to the targets (least F)"));
     QToolButton* m_save =
         named(toolButton(tr("Save…"), this), "spaceSave", tr("Saves the picture, or all samples as a table (.csv)"));
     QProgressBar* m_progress = progressBar("spaceProgress", this, 1000);

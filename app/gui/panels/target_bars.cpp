@@ -14,6 +14,7 @@
 #include "store/edits.h"
 #include "widgets/controls.h"
 #include "widgets/lock_mark.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -359,15 +360,16 @@ QString TargetBars::tip(int feature) const {
     if (const Measures* m = m_results.measures(); m && f < m->features.size()) {
         const FeatureMeasures& now = m->features[f];
         const double b = brightnessPart(now, m_store.session().measure->vws);
-        text += tr("\nVWS %1 = %2 by brightness + %3 by saturation\nvisibility %4")
+        text += tr("\nattention (VWS) %1 = %2 by brightness + %3 by saturation\nseen (visibility) %4")
                     .arg(share(now.vws), share(now.vws * b), share(now.vws * (1 - b)), share(now.visibility));
     }
     if (m_store.scene().isEmpty(f)) return text + "\n" + emptyFeatureText(m_store.scene(), feature);
     if (hasTarget(feature)) text += tr(", target %1").arg(share(m_store.scene().targets()[f]));
     return text +
-           tr("\n\nThick bar: VWS, the feature's share of what catches the eye (0 to 1); striped: by saturation\n"
-              "Thin bar: its visibility, the share of the picture that it makes (0 to 1)\n"
-              "Handle: the VWS that Optimize aims at; the targets add up to 1.\n"
+           tr("\n\nThick bar: attention, the feature's share of what catches the eye (VWS, 0 to 1); striped: by\n"
+              "saturation\n"
+              "Thin bar: seen, the share of the picture that the feature makes up (visibility, 0 to 1)\n"
+              "Handle: the attention that Optimize aims at; the targets add up to 1.\n"
               "Drag it, press Left and Right (Shift: larger steps), or type it: double click, Enter, a digit");
 }
 
@@ -381,8 +383,9 @@ void TargetBars::paintEvent(QPaintEvent*) {
     painter.setPen(theme::kFaint);
     const double head = kHead - 4;
     painter.drawText(QRectF(kName, 2, width() - kName - kNumbers, head), Qt::AlignLeft | Qt::AlignVCenter,
-                     metrics.elidedText(tr("VWS (striped: by saturation); thin: visibility"), Qt::ElideRight,
-                                        width() - kName - kNumbers));
+                     metrics.elidedText(terms().areScientific() ? tr("VWS (striped: by saturation); thin: visibility")
+                                                                : tr("attention (striped: by saturation); thin: seen"),
+                                        Qt::ElideRight, width() - kName - kNumbers));
     const double left = width() - 2 - kLock - kTarget;
     painter.drawText(QRectF(left - kNow, 2, kNow, head), Qt::AlignRight | Qt::AlignVCenter, tr("now"));
     painter.drawText(QRectF(left, 2, kTarget, head), Qt::AlignRight | Qt::AlignVCenter, tr("target"));

@@ -11,6 +11,7 @@
 #include "widgets/layouts.h"
 #include "widgets/number_text.h"
 #include "widgets/plot_view.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -29,11 +30,12 @@ bool same(const std::shared_ptr<const TransferFunction>& a, const std::shared_pt
 PanelInfo temporalPanel() {
     return {.id = "temporal",
             .title = QObject::tr("Curves over time"),
+            .group = PanelGroup::Time,
             .area = Qt::BottomDockWidgetArea,
             .visible = false,
             .tabOf = "tf",
             .keys = QKeySequence("Ctrl+4"),
-            .tip = QObject::tr("VWS, visibility, distance and flicker of all frames, with and without transfer "
+            .tip = QObject::tr("Attention, visibility, distance and flicker of all frames, with and without transfer "
                                "functions that follow them"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
                 return new TemporalPanel(services, controllers.player, controllers.adapting, parent);
@@ -50,7 +52,13 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
             },
             WhenBusy::StopOld, &m_lane) {
     auto* plots = makePlots();
-    m_shown->addItems({tr("VWS"), tr("FV"), tr("Opacity"), tr("2DFS")});
+    m_shown->addItems({{}, {}, {}, {}});
+    const auto nameFigures = [this] {
+        const QString names[] = {terms().attention(), terms().visibility(), tr("Opacity"), terms().pictureSaliency()};
+        for (int i = 0; i < m_shown->count(); ++i) m_shown->setItemText(i, names[i]);
+        refresh();
+    };
+    connect(&terms(), &Terms::changed, this, nameFigures);
     m_progress->setMaximumSize(120, 12);
     m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
     makeFaint(*m_readOut);
@@ -78,7 +86,7 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
         m_services.showError(tr("The frames cannot be measured"), error);
         refresh();
     });
-    refresh();
+    nameFigures();
 }
 
 TemporalPanel::Known TemporalPanel::figuresFor(const Task& task, const JobControl& job) {
@@ -284,9 +292,11 @@ QString TemporalPanel::words(int known) const {
         const double tolerance = m_services.scene().session.optimize->tolerance;
         const SequenceFigures sum = summaryOf(run.frames, tolerance);
         if (sum.worst < 0) continue; // no frame could be read
-        const QString above = sum.above == 0 ? QString() : tr(", %L1 not below %2").arg(sum.above).arg(tolerance);
-        words << tr("%1: F %2 (largest %3, frame %4%5), flicker %6")
-                     .arg(QString::fromStdString(run.name), shortNumber(sum.rms), shortNumber(sum.worstObjective))
+        const QString above =
+            sum.above == 0 ? QString() : tr(", %L1 more than %2").arg(sum.above).arg(terms().distanceText(tolerance));
+        words << tr("%1: %2 (most %3, frame %4%5), flicker %6")
+                     .arg(QString::fromStdString(run.name), terms().offTarget(sum.rms),
+                          terms().distanceText(sum.worstObjective))
                      .arg(sum.worst)
                      .arg(above, shortNumber(sum.flicker));
     }
@@ -300,9 +310,10 @@ void TemporalPanel::refresh() {
     const int count = m_player.frameCount(), known = series ? knownCount() : 0;
     m_measure->setEnabled(series && (m_asked || known < count));
     m_measure->setText(m_asked ? tr("Stop") : tr("Measure all frames"));
-    m_measure->setToolTip(m_asked ? tr("Stop measuring; the frames measured so far are kept")
-                                  : tr("VWS, visibility and flicker of every frame that is not known as it is now,\n"
-                                       "from the present camera"));
+    m_measure->setToolTip(m_asked
+                              ? tr("Stop measuring; the frames measured so far are kept")
+                              : tr("Attention, visibility and flicker of every frame that is not known as it is now,\n"
+                                   "from the present camera"));
     m_progress->setVisible(m_asked);
     m_progress->setRange(0, std::max(1, count));
     m_progress->setValue(known);

@@ -420,12 +420,13 @@ void VariablesPanel::add(const Variable& variable, const QString& text) {
 PanelInfo variablesPanel() {
     return {.id = "variables",
             .title = QObject::tr("Variables"),
+            .group = PanelGroup::Files,
             .visible = false,
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+Shift+V"),
             .tip = QObject::tr("Several variables, what each drives, and the ground"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
-                const QString menu = QObject::tr("&View");
+                const QString menu = QObject::tr("&View") + "/" + QObject::tr("Varia&bles");
                 SessionStore& store = services.store();
                 auto* panel = new VariablesPanel(services, controllers.opening, parent);
                 services.actions().add(
@@ -433,7 +434,7 @@ PanelInfo variablesPanel() {
                     QObject::tr("Saturation, brightness and hue from variables, or colours of "
                                 "the transfer function"),
                     [panel] { panel->channels().toggle(); }, [&services] { return services.isEditable(); },
-                    {.checked = [&store] { return store.session().hsb->on; }, .separatorBefore = true});
+                    {.checked = [&store] { return store.session().hsb->on; }});
                 services.actions().add(
                     menu, "swapVariablesAction", QObject::tr("S&wap opacity and brightness"), {},
                     QObject::tr("The variable of brightness drives opacity, and the other way round"),

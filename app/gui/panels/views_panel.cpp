@@ -11,6 +11,7 @@
 #include "view/view_globe.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -27,9 +28,11 @@ QString anglesText(const Vec3& towardEye) {
 
 /// `about`: of the map, which is of a coarser copy of the volume.
 QString figureText(const ViewMetric& metric, double value, bool about) {
-    const QString name = metric.figure == ViewMetric::Figure::Objective ? QObject::tr("F") : QObject::tr("VWS");
-    return about ? QObject::tr("%1 ≈ %2, on a coarser copy of the volume").arg(name, QString::number(value, 'f', 2))
-                 : QStringLiteral("%1 = %2").arg(name, QString::number(value, 'f', 4));
+    const QString figure =
+        metric.figure == ViewMetric::Figure::Objective
+            ? terms().offTarget(value)
+            : QObject::tr("%1 = %2").arg(terms().attention(), QString::number(value, 'f', about ? 2 : 4));
+    return about ? QObject::tr("about %1, on a coarser copy of the volume").arg(figure) : figure;
 }
 
 /// What is judged, the sphere in its colours, the best view in words, and the ways there.
@@ -47,8 +50,8 @@ private:
     ViewSearchController& m_search;
     QComboBox* m_figure =
         named(new QComboBox(this), "viewsFigure",
-              tr("What a view is judged by: F, the distance of all shares of saliency from their targets\n"
-                 "(less is better), or the share (VWS, 0 to 1) of one feature (more is better)"));
+              tr("What a view is judged by: how far all features are from their targets (F, less is better),\n"
+                 "or the attention on one feature (VWS, 0 to 1, more is better)"));
     ViewGlobe* m_globe = new ViewGlobe(this);
     QLabel* m_words = wrappedLabel("viewsWords", this);
     QProgressBar* m_progress = progressBar("viewsProgress", this);
@@ -112,6 +115,10 @@ ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget
             fillFigures();
         refresh();
     });
+    connect(&terms(), &Terms::changed, this, [this] {
+        refresh();
+        m_globe->update();
+    });
     fillFigures();
     refresh();
 }
@@ -119,9 +126,9 @@ ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget
 void ViewsPanel::fillFigures() {
     const QSignalBlocker quiet(m_figure);
     m_figure->clear();
-    m_figure->addItem(tr("Distance from the targets (F)"), QVariant::fromValue(FeatureId(0)));
+    m_figure->addItem(tr("Distance from the targets"), QVariant::fromValue(FeatureId(0)));
     for (const Feature& f : m_services.scene().tf.features)
-        m_figure->addItem(tr("Saliency (VWS) of %1").arg(QString::fromStdString(f.name)), QVariant::fromValue(f.id));
+        m_figure->addItem(tr("Attention on %1").arg(QString::fromStdString(f.name)), QVariant::fromValue(f.id));
 }
 
 QString ViewsPanel::words() const {
@@ -187,6 +194,7 @@ void ViewsPanel::refresh() {
 PanelInfo viewsPanel() {
     return {.id = "views",
             .title = QObject::tr("Best view"),
+            .group = PanelGroup::Shares,
             .area = Qt::LeftDockWidgetArea,
             .visible = false, // costs some hundred sweeps
             .size = 240,

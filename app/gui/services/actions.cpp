@@ -3,10 +3,15 @@
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
+#include <QSettings>
 #include <QToolBar>
+
+#include "widgets/icons.h"
 
 namespace pellucid::gui {
 namespace {
+
+constexpr const char* kWords = "toolBarWords";
 
 QString plain(QString text) {
     text.remove('&');
@@ -49,6 +54,7 @@ QAction* Actions::add(const QString& menu, const QString& id, const QString& tex
 QAction* ActionMenu::add(const QString& id, const QString& text, const QString& keys, const QString& tip,
                          const std::function<void()>& trigger, ActionMore more) {
     more.separatorBefore |= std::exchange(m_separates, false);
+    more.section = std::exchange(m_section, {});
     return m_actions.add(m_menu, id, text, keys, tip, trigger, more.enabled ? more.enabled : m_enabled, more);
 }
 
@@ -92,20 +98,43 @@ void Actions::build(QMainWindow& window) {
     QString barGroup;
     for (const Entry& e : m_entries) {
         e.action->setParent(&window);
+        window.addAction(e.action); // its keys work where it is in no menu, or menus are hidden
         if (!e.menu.isEmpty()) {
             QMenu* menu = menuAt(window, e.menu);
-            if (e.more.separatorBefore) menu->addSeparator();
+            if (!e.more.section.isEmpty())
+                menu->addSection(e.more.section);
+            else if (e.more.separatorBefore)
+                menu->addSeparator();
             menu->addAction(e.action);
-        } else {
-            window.addAction(e.action); // its keys work all the same
         }
         if (!e.more.inToolBar) continue;
         if (!bar->actions().isEmpty() && barGroup != e.menu) bar->addSeparator();
         barGroup = e.menu;
+        e.action->setIcon(iconNamed(e.action->objectName()));
+        e.action->setIconVisibleInMenu(false);
         bar->addAction(e.action);
     }
-    window.addToolBar(bar);
+    bar->setIconSize({20, 20});
+    m_bar = bar;
+    m_window = &window;
+    showWords(hasWords());
     refresh();
+}
+
+bool Actions::hasWords() const { return QSettings().value(kWords).toBool(); }
+
+void Actions::showWords(bool shown) {
+    QSettings().setValue(kWords, shown);
+    m_bar->setToolButtonStyle(shown ? Qt::ToolButtonTextUnderIcon : Qt::ToolButtonIconOnly);
+    // Without words it needs no row of its own: the picture has it.
+    if (shown) {
+        m_window->menuBar()->setCornerWidget(nullptr);
+        m_window->addToolBar(m_bar);
+    } else {
+        m_window->removeToolBar(m_bar);
+        m_window->menuBar()->setCornerWidget(m_bar);
+    }
+    m_bar->show();
 }
 
 QString Actions::keyTable(const QString& text) const {

@@ -12,6 +12,7 @@
 
 class QMainWindow;
 class QMenu;
+class QToolBar;
 
 namespace pellucid::gui {
 
@@ -22,6 +23,7 @@ struct ActionMore {
     std::function<QString()> say = {};     ///< the tool tip's text, where it changes ("Undo: Move point")
     std::function<QString()> caption = {}; ///< the text, where it changes
     bool separatorBefore = false, inToolBar = false;
+    QString section = {}; ///< the heading of the entries from this one on
 };
 
 /// What the mouse does somewhere, for the table of keys.
@@ -48,6 +50,9 @@ public:
 
     /// Menus in the order in which they first occur, the tool bar after them.
     void build(QMainWindow& window);
+    /// Whether the tool bar has words below its icons; kept on this machine.
+    bool hasWords() const;
+    void showWords(bool shown);
     /// A menu of `build()` that somebody fills himself, such as that of recent files.
     QMenu* menu(const QString& path) const;
 
@@ -64,6 +69,8 @@ private:
     std::vector<Entry> m_entries;
     std::vector<Gesture> m_gestures;
     std::map<QString, QMenu*> m_menus; // by path
+    QMainWindow* m_window = nullptr;   // from build() on
+    QToolBar* m_bar = nullptr;
     QMenu* menuAt(QMainWindow& window, const QString& path);
 };
 
@@ -75,6 +82,7 @@ public:
 
     /// The next entry stands below a line.
     void separate() { m_separates = true; }
+    void beginSection(const QString& title) { m_section = title; } ///< with the next entry
     QAction* add(const QString& id, const QString& text, const QString& keys, const QString& tip,
                  const std::function<void()>& trigger, ActionMore more = {});
     /// An entry with a check mark while `checked` says so.
@@ -86,6 +94,7 @@ private:
     QString m_menu;
     std::function<bool()> m_enabled;
     bool m_separates = false;
+    QString m_section;
 };
 
 } // namespace pellucid::gui

@@ -14,6 +14,7 @@
 #include "render/view_direction.h"
 #include "tf/color_maps.h"
 #include "widgets/controls.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -199,7 +200,8 @@ void ViewGlobe::paintLegend(QPainter& painter) const {
     const auto about = [](double value) { return QStringLiteral("≈ %1").arg(value, 0, 'f', 2); };
     painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter, about(m_worst));
     painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter, about(m_best));
-    const QString name = m_map.metric.figure == ViewMetric::Figure::Objective ? tr("F") : tr("VWS");
+    const QString name =
+        m_map.metric.figure == ViewMetric::Figure::Objective ? terms().distance() : terms().attention();
     painter.drawText(words, Qt::AlignCenter, name);
 }
 

@@ -12,7 +12,6 @@
 #include <QMessageBox>
 #include <QMimeData>
 #include <QScreen>
-#include <QSettings>
 #include <QStatusBar>
 #include <QTextBrowser>
 
@@ -31,6 +30,7 @@
 #include "widgets/scrolled.h"
 #include "window/dock_space.h"
 #include "window/notice_bar.h"
+#include "window/room.h"
 #include "window/status_line.h"
 #include "window/welcome_card.h"
 
@@ -67,7 +67,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
       m_controllers(std::make_unique<Controllers>(*m_services)),
       m_view(new VolumeView(m_services->store(), renderer, this, &m_controllers->fields)),
       m_views(new ViewGrid(*m_services, m_controllers->fields, *m_view, m_controllers->comparing, this)),
-      m_row(new QHBoxLayout) {
+      m_row(new QHBoxLayout), m_room(new Room(*this, *m_services, *m_row)) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -83,6 +83,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     m_view->overlay().add(std::make_unique<LightLayer>(*m_services, m_view->overlay()));
     addProbe(*m_services, m_controllers->probe, *m_view);
     m_view->overlay().add(std::make_unique<RegionLayer>(*m_services, m_controllers->refining, m_view->overlay()));
+    m_room->addActions();
     addPanels();
     addHelpActions();
     m_services->actions().build(*this);
@@ -122,14 +123,12 @@ MainWindow::~MainWindow() {
 
 void MainWindow::addPanels() {
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-    ActionMenu menu(m_services->actions(), tr("&View"));
-    menu.separate();
     auto* const space = new DockSpace(*this);
-    for (const PanelInfo& panel : panelRegistry()) {
+    const std::vector<PanelInfo> panels = panelRegistry();
+    for (const PanelInfo& panel : panels) {
         auto* dock = new QDockWidget(panel.title, this);
         dock->setObjectName(QString(panel.id) + "Dock");
-        auto* const content = new DockScroll(panel.make(*m_services, *m_controllers, dock), panel.area);
-        dock->setWidget(content);
+        dock->setWidget(new DockScroll(panel.make(*m_services, *m_controllers, dock), panel.area));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
         space->watch(*dock);
@@ -141,12 +140,30 @@ void MainWindow::addPanels() {
         if (panel.below != nullptr) splitDockWidget(m_services->panels().dock(panel.below), dock, Qt::Vertical);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
-        menu.addCheck(
-            QString(panel.id) + "Action", tr("%1 panel").arg(panel.title), panel.keys.toString(), panel.tip,
-            [dock] { return isInFront(*dock); }, [this, dock, content] { togglePanel(*dock, *content); });
         m_services->panels().add(panel.id, *dock);
     }
+    addPanelActions(panels);
+    m_room->panelsAdded();
     connect(&m_services->panels(), &Panels::visibilityChanged, &m_services->actions(), &Actions::refresh);
+}
+
+void MainWindow::addPanelActions(const std::vector<PanelInfo>& panels) {
+    const std::pair<PanelGroup, QString> groups[] = {{PanelGroup::Look, tr("Look")},
+                                                     {PanelGroup::Shares, tr("Shares")},
+                                                     {PanelGroup::Time, tr("Time")},
+                                                     {PanelGroup::Files, tr("Files")}};
+    ActionMenu menu(m_services->actions(), tr("&Panels"));
+    for (const auto& [group, title] : groups) {
+        menu.beginSection(title);
+        for (const PanelInfo& panel : panels) {
+            if (panel.group != group) continue;
+            QDockWidget* const dock = m_services->panels().dock(panel.id);
+            menu.addCheck(
+                QString(panel.id) + "Action", panel.title, panel.keys.toString(), panel.tip,
+                [dock] { return isInFront(*dock); },
+                [this, dock] { togglePanel(*dock, *static_cast<DockScroll*>(dock->widget())); });
+        }
+    }
 }
 
 void MainWindow::togglePanel(QDockWidget& dock, const DockScroll& content) {
@@ -179,11 +196,7 @@ void MainWindow::addHelpActions() {
     actions.add(tr("&File"), "quitAction", tr("&Quit"), "Ctrl+Q", {}, [] { QApplication::closeAllWindows(); });
 }
 
-void MainWindow::restoreLayout() {
-    const QSettings settings;
-    restoreGeometry(settings.value("geometry").toByteArray());
-    restoreState(settings.value("windowState").toByteArray());
-}
+void MainWindow::restoreLayout() { m_room->restore(); }
 
 void MainWindow::welcome() {
     if (!WelcomeCard::isWanted()) return;
@@ -219,9 +232,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     m_controllers->recovery.discard();
     m_controllers->opening.cancel();
     m_controllers->saving.cancel();
-    QSettings settings;
-    settings.setValue("geometry", saveGeometry());
-    settings.setValue("windowState", saveState());
+    m_room->save();
     event->accept();
 }
 

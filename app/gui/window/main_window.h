@@ -14,6 +14,8 @@ class QHBoxLayout;
 namespace pellucid::gui {
 
 class DockScroll;
+class Room;
+struct PanelInfo;
 struct Controllers;
 
 class MainWindow : public QMainWindow {
@@ -29,6 +31,7 @@ public:
 
     /// Size, place and docks as the last window was closed with.
     void restoreLayout();
+    Room& room() { return *m_room; }
     /// A card beside the picture, if nobody has dismissed it: for a start on a sample.
     void welcome();
     /// The picture is as good as it gets, the figures are of the present state, and nothing is under way.
@@ -45,6 +48,7 @@ protected:
 
 private:
     void addPanels();
+    void addPanelActions(const std::vector<PanelInfo>& panels);
     void togglePanel(QDockWidget& dock, const DockScroll& content);
     void addHelpActions();
     void updateTitle();
@@ -54,6 +58,7 @@ private:
     VolumeView* m_view;
     ViewGrid* m_views;  // with m_view in it
     QHBoxLayout* m_row; // with m_views in it
+    Room* m_room;
 };
 
 } // namespace pellucid::gui

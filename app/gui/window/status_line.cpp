@@ -27,7 +27,9 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
       m_renderer(named(new QLabel(&bar), "rendererLabel")),
-      m_engine(named(new QLabel(&bar), "engineLabel", tr("What computes visibility and VWS"))),
+      m_engine(
+          named(new QLabel(&bar), "engineLabel",
+                tr("What computes how much of each feature is seen (visibility) and how much catches the eye (VWS)"))),
       m_background(named(new QLabel(&bar), "backgroundLabel")), m_progress(progressBar("backgroundProgress", &bar)),
       m_cancel(named(toolButton(tr("Cancel"), &bar), "backgroundCancel")) {
     m_progress->setMaximumSize(160, 14);

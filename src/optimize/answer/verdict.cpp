@@ -92,8 +92,6 @@ TransferFunction withColor(TransferFunction tf, std::size_t feature, const Rgb& 
     return tf;
 }
 
-std::string fText(double objective) { return "F = " + fixedText(objective, 4); }
-
 std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& problem, const std::vector<double>& targets,
                                      double tolerance) {
     const std::vector<Feature>& features = problem.tf.features;
@@ -102,10 +100,11 @@ std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& probl
         if (std::abs(v.vws[i] - targets[i]) > 0.005)
             shares.push_back(features[i].name + " " + percentText(v.vws[i]) + " (wanted " + percentText(targets[i]) +
                              ")");
-    sentences.push_back("Out of reach: " + fText(v.objective) + " is the nearest" +
+    sentences.push_back("Out of reach: the nearest is " + offTargetText(v.objective) +
                         (shares.empty() ? "" : ", with " + listed(shares)) + ".");
     const auto reached = [&](double objective) {
-        return objective < tolerance ? "the target is reached, " + fText(objective) : fText(objective) + " is reached";
+        return objective < tolerance ? std::string("the targets are reached")
+                                     : "it would be " + offTargetText(objective);
     };
     std::size_t told = 0;
     for (const ReachLimit& limit : v.limits) {
@@ -166,7 +165,8 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
     Verdict verdict{nearest.objective, nearest.vws, nearest.opacity, {}, {}, {}, {}};
     verdict.occlusion = occlusionAt(tools, problem, nearest.opacity, job);
     if (nearest.objective < options.tolerance) {
-        verdict.sentences = {"Within reach: Newton's method gets to " + fText(nearest.objective) + "."};
+        verdict.sentences = {"Within reach: Newton's method comes within " + percentText(nearest.objective) +
+                             " of the targets."};
         return verdict;
     }
 

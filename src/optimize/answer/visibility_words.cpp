@@ -48,6 +48,11 @@ std::string percentText(double share) {
     return fixedText(100 * share, share < 0.0995 && share > 0 ? 1 : 0) + " %";
 }
 
+std::string offTargetText(double objective) {
+    return objective > 0 && objective < 0.0005 ? "off target by less than 0.1 %"
+                                               : "off target by " + percentText(objective);
+}
+
 std::string keptText(const OptimizeResult& result) {
     if (!result.seen || !result.seen->exact) return {};
     const SeenShares& exact = *result.seen->exact;

@@ -21,4 +21,7 @@ std::string listed(const std::vector<std::string>& words);
 /// "12 %"; below 10 % "1.2 %", below 0.1 % "< 0.1 %".
 std::string percentText(double share);
 
+/// Of the distance F of shares from their targets: "off target by 2.2 %".
+std::string offTargetText(double objective);
+
 } // namespace pellucid

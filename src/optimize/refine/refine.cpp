@@ -88,23 +88,23 @@ std::span<const Setting> settingsOf<RefineSteps>() {
         {.key = "step_down",
          .at = member<&R::stepDown>,
          .words = "Step &down",
-         .help = "The opacity that an iteration takes from the heaviest edge.",
+         .help = "The opacity that a step takes from the heaviest edge.",
          .range = {0, 1, NumberRange::Open::Low},
          .used = isGreedy},
         {.key = "step_up",
          .at = member<&R::stepUp>,
          .words = "Step &up",
-         .help = "The opacity that an iteration gives to the lightest edge; auto derives it from the step down and the "
+         .help = "The opacity that a step gives to the lightest edge; auto derives it from the step down and the "
                  "significances of both ends.",
          .range = {0, 1, NumberRange::Open::Low},
          .none = "auto",
          .used = isGreedy},
         {.key = "max_iterations",
          .at = member<&R::maxIterations>,
-         .words = "Most &iterations",
-         .help = "The most iterations that a refinement makes.",
+         .words = "Most s&teps",
+         .help = "The most steps that a refinement makes.",
          .range = {0, 1e9},
-         .unit = "iterations",
+         .unit = "steps",
          .used = isGreedy},
     };
     return kSettings;

@@ -237,7 +237,7 @@ std::string darkeningText(const Darkening& d) {
         "The picture gets dark: its coverage falls from " + number(d.before) + " to " + number(d.after) + ".";
     if (d.help == Darkening::Help::Exact) text += " With the method Exact it stays at " + number(d.helped) + ".";
     if (d.help == Darkening::Help::Stop)
-        text += " Stopped after " + std::to_string(d.iterations) + (d.iterations == 1 ? " iteration" : " iterations") +
+        text += " Stopped after " + std::to_string(d.iterations) + (d.iterations == 1 ? " step" : " steps") +
                 " it stays at " + number(d.helped) + ".";
     if (d.help == Darkening::Help::None) text += " Fix the control points that are to stay visible, and refine again.";
     return text;
