@@ -1,6 +1,7 @@
 #include "render/cpu/sheared_picture.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <glm/geometric.hpp>
 
@@ -12,7 +13,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kTileWidth = 64, kTileHeight = 8, kWarpTile = 64; ///< rays and pixels
+constexpr int kTileHeight = 16, kWarpTile = 64; ///< rays and pixels
 constexpr int kPacket = 8;                                      ///< rays
 
 std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
@@ -90,6 +91,29 @@ void fillPlanes(const PacketScene& scene, ShearedScene& s) {
     }
 }
 
+/// Where the rows of rays have met something, see ShearedScene::extents.
+std::vector<int> extentsOf(const std::vector<std::uint8_t>& touched, int height) {
+    const int packets = height > 0 ? static_cast<int>(touched.size()) / height : 0;
+    std::vector<int> own(2 * asSize(height)), all(own.size());
+    for (int y = 0; y < height; ++y) {
+        const auto row = touched.begin() + static_cast<std::ptrdiff_t>(y) * packets, end = row + packets;
+        const auto first = std::find(row, end, 1);
+        const auto last = std::find(std::reverse_iterator(end), std::reverse_iterator(row), 1);
+        own[2 * asSize(y)] = kPacket * static_cast<int>(first - row);
+        own[2 * asSize(y) + 1] = kPacket * static_cast<int>(last.base() - row) - 1;
+    }
+    for (int y = 0; y < height; ++y) {
+        int from = kPacket * packets, to = -1;
+        for (int r = std::max(0, y - 1); r <= std::min(height - 1, y + 2); ++r) {
+            from = std::min(from, own[2 * asSize(r)]);
+            to = std::max(to, own[2 * asSize(r) + 1]);
+        }
+        all[2 * asSize(y)] = from;
+        all[2 * asSize(y) + 1] = to;
+    }
+    return all;
+}
+
 /// How ways through (u, v, w) lie in the world and before the camera.
 void fillWorld(const ShearView& view, const Camera& camera, const Geometry& geometry, ShearedScene& s) {
     const Mat3 worldFromIndex = geometry.worldFromIndex();
@@ -150,12 +174,16 @@ void ShearedPicture::draw(const PacketScene& scene, const Camera& camera, const 
     s.stride = 4 * static_cast<std::int64_t>(columns);
     m_rays.resize(std::max<std::size_t>(4, asSize(view.height) * static_cast<std::size_t>(s.stride)));
     s.rgba = m_rays.data();
+    m_touched.assign(asSize(view.height) * asSize(columns / kPacket), 0);
+    s.touched = m_touched.data();
     const ShearedKernels& kernel = shearedKernels()[asSize(m_kernel)];
-    const std::vector<PacketTile> rays = tilesOf(view.width, view.height, kTileWidth, kTileHeight);
+    const std::vector<PacketTile> rays = tilesOf(view.width, view.height, kShearedTileWidth, kTileHeight);
     parallelFor(rays.size(), [&](std::size_t i) {
         job.throwIfStopped();
         kernel.cast(s, rays[i]);
     });
+    const std::vector<int> extents = extentsOf(m_touched, view.height);
+    s.extents = extents.data();
     const std::vector<PacketTile> pixels = tilesOf(scene.width, scene.height, kWarpTile, kWarpTile);
     parallelFor(pixels.size(), [&](std::size_t i) { kernel.warp(s, pixels[i]); });
 }

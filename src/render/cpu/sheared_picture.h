@@ -37,6 +37,7 @@ private:
     ZeroedVector<std::uint16_t> m_turned;
     ZeroedVector<std::uint8_t> m_turnedValid;
     std::vector<float> m_rays;
+    std::vector<std::uint8_t> m_touched;
 };
 
 } // namespace pellucid

@@ -32,6 +32,11 @@ struct ShearedScene {
     float* rgba = nullptr;
     std::int64_t stride = 0;
 
+    std::uint8_t* touched = nullptr; ///< [height][stride/32]: whether any of eight rays has met anything
+    /// [height][2]: the rays from the first to the last of a row and its three neighbours, one before and two behind,
+    /// that have met anything. For the warp.
+    const int* extents = nullptr;
+
     PacketPlane planes[18]; ///< in (u, v, w)
     int planeCount = 0;
     /// By u, v and w: along the picture to the right, downward and ahead, world units per voxel.
@@ -43,6 +48,8 @@ struct ShearedScene {
     float ofPixel[3][3]{};
 };
 
+/// Rays that go on together, at most: tiles are no wider.
+inline constexpr int kShearedTileWidth = 64;
 /// Rays [x0, x1) × [y0, y1) of the grid; x0 a multiple of 8.
 using ShearedKernel = void (*)(const ShearedScene&, const PacketTile&);
 /// Pixels of the picture, from all rays.

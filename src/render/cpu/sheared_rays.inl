@@ -5,6 +5,8 @@
 //   sheared_rays_samples.inl   what eight neighbours meet in a slice
 //   sheared_rays_warp.inl      from the rays to the picture
 // docs/method.md, "The quick picture", says what is computed.
+#include <new>
+
 #include "render/cpu/sheared_rays_samples.inl"
 #include "render/cpu/sheared_rays_warp.inl"
 
@@ -13,6 +15,8 @@ namespace {
 
 /// Segments between two looks at the blocks, where rays are in one that is not passed over.
 constexpr int kShearedRun = 4;
+constexpr int kEnded = 1 << 30; ///< in the place of a slice
+constexpr int kMostPackets = kShearedTileWidth / kWide;
 /// Slices before memory is needed that it is asked for.
 constexpr int kAskedAhead = 6;
 /// What a ray has gathered up to this opacity is lit as one.
@@ -23,16 +27,52 @@ constexpr float kShearedLitAtOnce = 1.0f / 256;
 template <class Code, bool kInvalid, bool kLight>
 class ShearedRays {
 public:
-    ShearedRays(const ShearedScene& s, const Slices<Code>& slices, const Samples& samples)
-        : m_s(s), m_scene(*s.scene), m_slices(slices), m_lighting(*s.scene, samples) {}
+    ShearedRays(const ShearedScene& s, const Slices<Code>& slices, const Lighting& lighting, int x, int y)
+        : m_s(s), m_scene(*s.scene), m_slices(slices), m_lighting(lighting), m_x(x), m_y(y) {
+        m_next = start() ? m_firstSlice : kEnded;
+    }
 
-    void run(int x, int y) {
-        if (start(x, y)) march();
+    /// The next slice that they have to be taken on from; kEnded: none.
+    int next() const { return m_next; }
+    int end() const { return m_lastSlice; }
+
+    /// Looks what lies between slice next() and the one behind it, or leaps on. In two parts, each for all packets of a
+    /// row in turn, so that the processor works on several of them at a time.
+    void look() {
+        const int n = m_next;
+        if (m_left == 0) {
+            const int leap = m_scene.leap ? slicesToLeap(n) : 0;
+            if (leap > 0) {
+                m_known = false;
+                goOn(n + leap);
+                return;
+            }
+            m_left = kShearedRun;
+        }
+        if (!m_known) meet(n, m_met[m_last]);
+        m_known = true;
+        meet(n + 1, m_met[1 - m_last]);
+        m_looked = true;
+    }
+    void step() {
+        if (!m_looked) return;
+        m_looked = false;
+        const int n = m_next;
+        const bool ended = absorb(n, m_met[m_last], m_met[1 - m_last]) &&
+                           none((m_clear >= kDark) & (m_exit > static_cast<float>(n)));
+        m_last = 1 - m_last;
+        --m_left;
+        goOn(ended ? kEnded : n + 1);
+    }
+
+    void finish() {
         if constexpr (kLight) light(m_pending > 0);
-        store(x, y);
+        store();
     }
 
 private:
+    void goOn(int slice) { m_next = slice < m_lastSlice ? slice : kEnded; }
+
     /// What is met where a ray passes a slice.
     struct Met {
         Vec8 code, share; ///< share of the valid voxels
@@ -41,10 +81,10 @@ private:
     };
 
     /// False where none meets the volume.
-    bool start(int x, int y) {
-        const Vec8 grid = all(static_cast<float>(x)) + kIota;
+    bool start() {
+        const Vec8 grid = all(static_cast<float>(m_x)) + kIota;
         m_u0 = all(m_s.first[0]) + grid * m_s.pitch[0];
-        m_v0 = m_s.first[1] + static_cast<float>(y) * m_s.pitch[1];
+        m_v0 = m_s.first[1] + static_cast<float>(m_y) * m_s.pitch[1];
         m_way[0] = m_u0 * m_s.scale[1] + m_s.shift[0][1];
         m_way[1] = all(m_v0 * m_s.scale[1] + m_s.shift[1][1]);
         Vec8 square = Vec8{};
@@ -75,32 +115,6 @@ private:
         m_allIn = highest(meets ? m_enter : all(-2));
         m_allOut = none(~meets) ? lowest(m_exit) : -2;
         return true;
-    }
-
-    void march() {
-        Met met[2], *last = &met[0], *next = &met[1];
-        bool known = false; // the slice n, in *last
-        for (int n = m_firstSlice; n < m_lastSlice;) {
-            const int leap = m_scene.leap ? slicesToLeap(n) : 0;
-            if (leap > 0) {
-                n += leap;
-                known = false;
-                continue;
-            }
-            if (!known) {
-                for (int i = 1; i < kAskedAhead; ++i) ask(n + 1 + i);
-                meet(n, *last);
-            }
-            known = true;
-            for (int i = 0; i < kShearedRun && n < m_lastSlice; ++i, ++n) {
-                ask(n + 1 + kAskedAhead);
-                meet(n + 1, *next);
-                if (absorb(n, *last, *next) && none((m_clear >= kDark) & (m_exit > static_cast<float>(n)))) return;
-                Met* const old = last;
-                last = next;
-                next = old;
-            }
-        }
     }
 
     Vec8 uAt(float w) const { return m_u0 * (m_s.scale[0] + w * m_s.scale[1]) + (m_s.shift[0][0] + w * m_s.shift[0][1]); }
@@ -144,10 +158,6 @@ private:
                                       : ((block + distance) << kRayBlockShift) - cell);
     }
 
-    void ask(int n) const {
-        const float w = static_cast<float>(n), scale = m_s.scale[0] + w * m_s.scale[1];
-        m_slices.prefetch(m_u0[0] * scale + (m_s.shift[0][0] + w * m_s.shift[0][1]), vAt(w), n);
-    }
     void meet(int n, Met& m) const {
         const float w = static_cast<float>(n);
         const Lanes lanes = m_slices.lanesAt(uAt(w), vAt(w), n);
@@ -156,9 +166,9 @@ private:
             m.share = m_slices.validShare(lanes);
             m.code = m.share > 0 ? m.code / m.share : Vec8{};
         }
-        look(m);
+        lookUp(m);
     }
-    void look(Met& m) const {
+    void lookUp(Met& m) const {
         m.cell = toInt(m.code * m_scene.cellOfCode + 0.5f);
         entriesAt(m_scene.colors, m.cell, m.sums);
     }
@@ -184,8 +194,8 @@ private:
         const Vec8 difference = b.code - a.code, start = a.code;
         a.code = start + from * difference;
         b.code = start + to * difference;
-        look(a);
-        look(b);
+        lookUp(a);
+        lookUp(b);
         Vec8 share = part;
         if constexpr (kInvalid) share *= 0.5f * (last.share + next.share);
         if (none((b.sums[3] ^ a.sums[3]) | (b.sums[3] & 1))) return false;
@@ -279,9 +289,10 @@ private:
         m_pending = which ? Vec8{} : m_pending;
     }
 
-    void store(int x, int y) const {
-        float* at = m_s.rgba + y * m_s.stride + 4 * static_cast<std::int64_t>(x);
+    void store() const {
+        float* at = m_s.rgba + m_y * m_s.stride + 4 * static_cast<std::int64_t>(m_x);
         const Vec8 alpha = 1.0f - m_clear;
+        m_s.touched[(m_y * m_s.stride + 4 * static_cast<std::int64_t>(m_x)) / (4 * kWide)] = !none(alpha > 0);
         for (int n = 0; n < kWide; ++n) {
             const Vec4 pixel{m_rgb[0][n], m_rgb[1][n], m_rgb[2][n], alpha[n]};
             __builtin_memcpy(at + 4 * n, &pixel, sizeof pixel);
@@ -291,7 +302,13 @@ private:
     const ShearedScene& m_s;
     const PacketScene& m_scene;
     const Slices<Code>& m_slices;
-    Lighting m_lighting;
+    const Lighting& m_lighting;
+    int m_x, m_y; ///< of the first ray in the grid
+    int m_next = 0, m_left = 0; ///< slice; and how many to the next look at the blocks
+    int m_last = 0;             ///< where what is met in slice m_next is in m_met
+    bool m_known = false;       ///< whether it is
+    bool m_looked = false;      ///< so is what is met in the slice behind
+    Met m_met[2];
     Vec8 m_u0, m_way[3]; ///< per slice
     float m_v0 = 0;
     Vec8 m_right, m_down, m_ahead, m_length; ///< per slice, world; the last in d0
@@ -302,17 +319,45 @@ private:
     int m_place = 0; ///< slice where what is pending is lit
 };
 
+/// A row of a tile: all its rays go from slice to slice together, as the voxels lie in memory.
+template <class Code, bool kInvalid, bool kLight>
+void castRow(const ShearedScene& s, const Slices<Code>& slices, const Lighting& lighting, int x0, int x1, int y) {
+    using Packet = ShearedRays<Code, kInvalid, kLight>;
+    alignas(Packet) unsigned char memory[kMostPackets * sizeof(Packet)];
+    auto* const packets = reinterpret_cast<Packet*>(memory);
+    int count = 0, first = kEnded, end = 0;
+    for (int x = x0; x < x1; x += kWide, ++count) {
+        const Packet* const packet = ::new (memory + static_cast<std::size_t>(count) * sizeof(Packet))
+            Packet(s, slices, lighting, x, y);
+        if (packet->next() == kEnded) continue;
+        first = smaller(first, packet->next());
+        end = larger(end, packet->end());
+    }
+    for (int n = first; n < end;) {
+        for (int p = 0; p < count; ++p)
+            if (packets[p].next() == n) packets[p].look();
+        int next = kEnded;
+        for (int p = 0; p < count; ++p) {
+            packets[p].step();
+            next = smaller(next, packets[p].next());
+        }
+        if (next <= n + 1) slices.prefetch(x0, x1, y, n + 1 + kAskedAhead);
+        n = next;
+    }
+    for (int p = 0; p < count; ++p) packets[p].finish();
+}
+
 template <class Code, bool kInvalid>
 void castTileOf(const ShearedScene& s, const PacketTile& tile) {
     const Slices<Code> slices(s);
     const Samples samples(*s.scene);
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; x += kWide) {
-            if (s.scene->light.any)
-                ShearedRays<Code, kInvalid, true>(s, slices, samples).run(x, y);
-            else
-                ShearedRays<Code, kInvalid, false>(s, slices, samples).run(x, y);
-        }
+    const Lighting lighting(*s.scene, samples);
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        if (s.scene->light.any)
+            castRow<Code, kInvalid, true>(s, slices, lighting, tile.x0, tile.x1, y);
+        else
+            castRow<Code, kInvalid, false>(s, slices, lighting, tile.x0, tile.x1, y);
+    }
 }
 
 void castTile(const ShearedScene& s, const PacketTile& tile) {

@@ -87,12 +87,22 @@ public:
         return lanes;
     }
 
-    /// Asks for what rays will meet in a slice, the first of which passes it at (u, v).
-    void prefetch(float u, float v, int slice) const {
-        const int column = clampTo(static_cast<int>(u), 0, m_s.dims[0] - 1), row = clampTo(static_cast<int>(v), 0, m_s.dims[1] - 1);
-        const Code* p = m_codes + rowAt(row, clampTo(slice, 0, m_s.dims[2] - 1)) + column * m_s.along[0];
-        __builtin_prefetch(p);
-        __builtin_prefetch(p + m_s.along[1]);
+    /// Asks for what rays x0 … x1 − 1 of row y will meet in a slice.
+    void prefetch(int x0, int x1, int y, int slice) const {
+        const float w = static_cast<float>(slice), scale = m_s.scale[0] + w * m_s.scale[1];
+        const auto place = [&](int a, int ray) {
+            const float at = (m_s.first[a] + static_cast<float>(ray) * m_s.pitch[a]) * scale +
+                             (m_s.shift[a][0] + w * m_s.shift[a][1]);
+            return clampTo(static_cast<int>(at), 0, m_s.dims[a] - 1);
+        };
+        constexpr int kLine = 64 / sizeof(Code);
+        const Code* const row = m_codes + rowAt(place(1, y), clampTo(slice, 0, m_s.dims[2] - 1));
+        const int last = place(0, x1);
+        for (int u = place(0, x0); u <= last; u += kLine) {
+            const Code* const p = row + u * m_s.along[0];
+            __builtin_prefetch(p);
+            __builtin_prefetch(p + m_s.along[1]);
+        }
     }
 
     /// Interpolated in the slice; of invalid voxels 0.

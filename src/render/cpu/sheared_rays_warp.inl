@@ -46,9 +46,10 @@ void warpTile(const ShearedScene& s, const PacketTile& tile) {
             const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
             const float below = ofPixel(2, px, py), i = ofPixel(0, px, py) / below, j = ofPixel(1, px, py) / below;
             Vec4 color{};
-            if (below > 0 && i >= 1 && j >= 1 && i < static_cast<float>(s.width - 2) &&
-                j < static_cast<float>(s.height - 2)) {
-                const int column = static_cast<int>(i), row = static_cast<int>(j);
+            const bool inside = below > 0 && i >= 1 && j >= 1 && i < static_cast<float>(s.width - 2) &&
+                                j < static_cast<float>(s.height - 2);
+            const int column = inside ? static_cast<int>(i) : 0, row = inside ? static_cast<int>(j) : 0;
+            if (inside && column + 2 >= s.extents[2 * row] && column - 1 <= s.extents[2 * row + 1]) {
                 const Vec4 across = cubicWeights(i - static_cast<float>(column)),
                            downward = cubicWeights(j - static_cast<float>(row));
                 const float* from = s.rgba + (row - 1) * s.stride + 4 * (column - 1);
