@@ -26,7 +26,7 @@ using namespace pellucid;
 
 namespace {
 
-constexpr double kElevation = 20;                           ///< degrees, of the orbit
+constexpr double kElevation = 20;                          ///< degrees, of the orbit
 constexpr double kLeastOpacity = 0.5 / 255, kDark = 0.999; ///< what VolPack leaves out, and where its rays end
 constexpr int kPictureSize = 512;
 
@@ -71,8 +71,8 @@ public:
         require(m_context, vpSetLookupShader(m_context, 1, 1, 0, m_grey.data(), sizeof m_grey, 0, nullptr, 0));
         require(m_context, vpSetd(m_context, VP_MAX_RAY_OPACITY, kDark));
         require(m_context, vpSetd(m_context, VP_MIN_VOXEL_OPACITY, kLeastOpacity));
-        require(m_context, vpSetImage(m_context, m_image.data(), kPictureSize, kPictureSize, kPictureSize,
-                                      VP_LUMINANCE));
+        require(m_context,
+                vpSetImage(m_context, m_image.data(), kPictureSize, kPictureSize, kPictureSize, VP_LUMINANCE));
         const Geometry& g = volume.geometry();
         m_size = Vec3(n) * g.spacing;
         vpWindow(m_context, VP_PARALLEL, -g.radius(), g.radius(), -g.radius(), g.radius(), -2 * g.radius(),
@@ -159,11 +159,10 @@ void compare(const std::string& path, int views, int rounds, const char* picture
         const double classified = cpuSeconds() - start;
         Times warm, times;
         measure(volpack, *renderer, volume->geometry(), tf, std::min(views, 8), warm); // tables and turned copies
-        for (int round = 0; round < rounds; ++round)
-            measure(volpack, *renderer, volume->geometry(), tf, views, times);
+        for (int round = 0; round < rounds; ++round) measure(volpack, *renderer, volume->geometry(), tf, views, times);
         const double theirs = median(times.volpack), ours = median(times.quick);
-        std::printf("  %4g   %7.1f %7.1f %7.2f %7.1f   %13.3f   %24.0f\n", peak, 1e3 * theirs, 1e3 * ours, ours / theirs,
-                    1e3 * median(times.full), times.least, 1e3 * classified);
+        std::printf("  %4g   %7.1f %7.1f %7.2f %7.1f   %13.3f   %24.0f\n", peak, 1e3 * theirs, 1e3 * ours,
+                    ours / theirs, 1e3 * median(times.full), times.least, 1e3 * classified);
         std::fflush(stdout);
         if (picture) volpack.write(std::string(picture) + "_" + std::to_string(peak).substr(0, 4) + ".pgm");
     }

@@ -355,9 +355,10 @@ Command addBench(CLI::App& program) {
     o->scene.camera.add(*app);
     o->scene.clip.add(*app);
     o->scene.engine.add(*app);
-    addValue(*app, "--only", "ROW,...", o->only, parseRows,
-             "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
-             "optimize-newton, threads, optimize-whole, refine, refine-500, refine-1000, refine-direct, render, preview");
+    addValue(
+        *app, "--only", "ROW,...", o->only, parseRows,
+        "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
+        "optimize-newton, threads, optimize-whole, refine, refine-500, refine-1000, refine-direct, render, preview");
     addValue(
         *app, "--repeat", "N", o->repeat, wholeFrom(1, 1000),
         "runs of each row after a first one that does not count; the median is reported (default: 3, and more for rows "
@@ -374,7 +375,8 @@ Command addBench(CLI::App& program) {
              "largest distance of samples in the rows \"render\" and \"preview\", in reference lengths (default 0.5)");
     app->add_flag("--shading", o->picture.light.on, "draw the rows \"render\" and \"preview\" with light from the eye");
     addValue(*app, "--orbit", "N", o->orbit, wholeFrom(1, 1000),
-             "views from all around that the rows \"render\" and \"preview\" draw; --json lists the time of each (default 1)");
+             "views from all around that the rows \"render\" and \"preview\" draw; --json lists the time of each "
+             "(default 1)");
     addOutputFile(*app, "--plot", o->plot,
                   "draw the seconds of the row \"threads\" over the number of threads: .svg or .png",
                   [](const std::string& path) { checkDrawingSuffix(path, "plots"); });

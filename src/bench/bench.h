@@ -42,8 +42,7 @@ template <>
 inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices",
                                                      "jacobian", "optimize", "optimize-newton", "threads",
                                                      "optimize-whole", "refine", "refine-500", "refine-1000",
-                                                     "refine-direct", "render",
-                                                     "preview");
+                                                     "refine-direct", "render", "preview");
 
 /// One line of the table.
 struct BenchResult {

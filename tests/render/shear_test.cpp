@@ -1,4 +1,5 @@
-// The quick picture: how views become shears, against rays of pixels one by one, and its pictures against the full ones.
+// The quick picture: how views become shears, against rays of pixels one by one, and its pictures against the full
+// ones.
 #include <catch2/catch.hpp>
 
 #include <random>
@@ -22,8 +23,8 @@ namespace {
 Geometry skewed() {
     Geometry g = geometryOf({20, 31, 26}, {1, 0.7, 1.6});
     g.origin = {3, -40, 12};
-    g.directions = Mat3(glm::normalize(Vec3(0.8, 0.6, 0.1)), glm::normalize(Vec3(-0.6, 0.8, 0)),
-                        glm::normalize(Vec3(0.1, 0, -1)));
+    g.directions =
+        Mat3(glm::normalize(Vec3(0.8, 0.6, 0.1)), glm::normalize(Vec3(-0.6, 0.8, 0)), glm::normalize(Vec3(0.1, 0, -1)));
     return g;
 }
 
@@ -43,7 +44,8 @@ std::vector<Camera> around(const Geometry& geometry, int count, Projection proje
 std::shared_ptr<const Volume> lumps(const Int3& n, const Vec3& spacing = Vec3(1)) {
     return volumeFrom(geometryOf(n, spacing), [n](int i, int j, int k) {
         const Vec3 p = (Vec3(i, j, k) + 0.5) / Vec3(n) - 0.5;
-        const double r = glm::length(p * Vec3(1, 1.3, 1.1)), bump = 0.05 * std::sin(9 * p.x) * std::cos(11 * p.y + 5 * p.z);
+        const double r = glm::length(p * Vec3(1, 1.3, 1.1)),
+                     bump = 0.05 * std::sin(9 * p.x) * std::cos(11 * p.y + 5 * p.z);
         return std::clamp(1.1 - 2.2 * (r + bump), 0.0, 1.0);
     });
 }
@@ -137,9 +139,9 @@ TEST_CASE("a homogeneous block is as opaque in the quick picture as its thicknes
         CpuRenderOptions options;
         options.kernel = static_cast<int>(kernel);
         const auto renderer = makeCpuRenderer(volume, options);
-        for (const auto& [direction, thickness] : {std::pair{Vec3(0, 1, 0), 24.0}, std::pair{Vec3(1, 0, 0), 24.0},
-                                                   std::pair{Vec3(0, 0, -1), 24.0},
-                                                   std::pair{Vec3(1, 0, -2), 24 * std::sqrt(1.25)}}) {
+        for (const auto& [direction, thickness] :
+             {std::pair{Vec3(0, 1, 0), 24.0}, std::pair{Vec3(1, 0, 0), 24.0}, std::pair{Vec3(0, 0, -1), 24.0},
+              std::pair{Vec3(1, 0, -2), 24 * std::sqrt(1.25)}}) {
             const Camera camera = lookingAlong(volume->geometry(), direction);
             REQUIRE(renderer->previewsInStorageOrder(camera, settings));
             const Image image = renderer->preview(camera, homogeneous(0.05), settings, 1);
@@ -166,7 +168,8 @@ TEST_CASE("the quick picture is the full one, from all around", "[sheared]") {
 }
 
 TEST_CASE("nothing jumps where rays begin to go along another axis", "[sheared]") {
-    // A hundredth of a degree to both sides of the diagonal: the pictures differ by no more than each from the full one.
+    // A hundredth of a degree to both sides of the diagonal: the pictures differ by no more than each from the full
+    // one.
     const auto volume = lumps({48, 48, 48});
     const auto renderer = makeCpuRenderer(volume);
     const RenderSettings settings = pictureOf(96, 80);
@@ -240,6 +243,7 @@ TEST_CASE("what cannot be drawn in storage order is drawn by rays", "[sheared]")
         RenderSettings settings = pictureOf(40, 30);
         settings.mode = mode;
         CHECK_FALSE(renderer->previewsInStorageOrder(camera, settings));
-        CHECK((renderer->preview(camera, tents(2), settings, 1).rgba == renderer->render(camera, tents(2), settings).rgba));
+        CHECK((renderer->preview(camera, tents(2), settings, 1).rgba ==
+               renderer->render(camera, tents(2), settings).rgba));
     }
 }

@@ -19,8 +19,7 @@ struct PixelRays {
         const Mat3 indexFromWorld = geometry.indexFromWorld();
         const double perPixel = 2 * camera.halfHeight() / height;
         const Vec3 right = indexFromWorld * (perPixel * camera.right()),
-                   down = indexFromWorld * (-perPixel * camera.trueUp()),
-                   ahead = indexFromWorld * camera.forward();
+                   down = indexFromWorld * (-perPixel * camera.trueUp()), ahead = indexFromWorld * camera.forward();
         const Vec3 corner = -0.5 * width * right - 0.5 * height * down; // the picture's top left
         const bool perspective = camera.projection == Projection::Perspective;
         point = geometry.voxelFromWorld(camera.eye) + (perspective ? Vec3(0) : corner);
@@ -124,7 +123,8 @@ void setGrid(ShearView& s, const Bounds& box, const Vec2& pixelOfMiddle, double 
     const auto set = [&](std::size_t i, int a, int& count) {
         s.pitch[i] = std::clamp(std::hypot(byX[a], byY[a]) / density.raysPerPixel, density.closest,
                                 std::max(density.closest, farthest[i]));
-        const double from = looks ? std::max(lo[a], shownLo[a]) : lo[a], to = looks ? std::min(hi[a], shownHi[a]) : hi[a];
+        const double from = looks ? std::max(lo[a], shownLo[a]) : lo[a],
+                     to = looks ? std::min(hi[a], shownHi[a]) : hi[a];
         count = from < to ? static_cast<int>(std::ceil((to - from) / s.pitch[i])) + 1 + 2 * kBorder : 0;
         s.first[i] = from - kBorder * s.pitch[i];
     };
@@ -154,8 +154,7 @@ std::optional<ShearView> shearOf(const Camera& camera, const Geometry& geometry,
     const Int3 n = geometry.dims;
     if (n.x < 2 || n.y < 2 || n.z < 2) return {};
     const bool perspective = camera.projection == Projection::Perspective;
-    const Vec3 ahead = geometry.indexFromWorld() *
-                       (perspective ? geometry.boxCenter() - camera.eye : camera.forward());
+    const Vec3 ahead = geometry.indexFromWorld() * (perspective ? geometry.boxCenter() - camera.eye : camera.forward());
     ShearView s;
     const int w = longestComponent(ahead);
     s.axis = w == 0 ? std::array{1, 2, 0} : (w == 1 ? std::array{0, 2, 1} : std::array{0, 1, 2});

@@ -42,7 +42,7 @@ struct ShearView {
     };
     std::array<Fraction, 3> ofPixel;
 
-    Vec3 inVoxels(const Vec3& uvw) const;    ///< from (u, v, w) to voxels of the grid
+    Vec3 inVoxels(const Vec3& uvw) const;     ///< from (u, v, w) to voxels of the grid
     Vec3 fromVoxels(const Vec3& voxel) const; ///< and back
     /// (u, v) at w of the ray through (U, V) of the plane `base`.
     Vec2 at(const Vec2& inBase, double w) const {
@@ -58,7 +58,7 @@ struct ShearView {
 /// Rays per pixel of a picture that a ShearView has, about, along each axis; and how close they get at most.
 struct ShearDensity {
     double raysPerPixel = 0.75;
-    double closest = 0.25; ///< voxels
+    double closest = 1;     ///< voxels
     double farthest = 1.85; ///< voxels, along u in every slice: that many neighbours are read together
 };
 

@@ -14,7 +14,7 @@ namespace pellucid {
 namespace {
 
 constexpr int kTileHeight = 16, kWarpTile = 64; ///< rays and pixels
-constexpr int kPacket = 8;                                      ///< rays
+constexpr int kPacket = 8;                      ///< rays
 
 std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
 
@@ -63,12 +63,12 @@ void fillView(const ShearView& view, ShearedScene& s) {
     s.height = view.height;
     // In rays of the grid: (U − first)/pitch, over what U is divided by.
     const auto& [u, v, below] = view.ofPixel;
-    const auto put = [](float (&to)[3], double constant, double perX, double perY) {
+    const auto put = [](float(&to)[3], double constant, double perX, double perY) {
         to[0] = static_cast<float>(constant);
         to[1] = static_cast<float>(perX);
         to[2] = static_cast<float>(perY);
     };
-    const auto ray = [&](float (&to)[3], const ShearView::Fraction& of, double first, double pitch) {
+    const auto ray = [&](float(&to)[3], const ShearView::Fraction& of, double first, double pitch) {
         put(to, (of.constant - first * below.constant) / pitch, (of.perX - first * below.perX) / pitch,
             (of.perY - first * below.perY) / pitch);
     };

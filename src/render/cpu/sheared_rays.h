@@ -1,5 +1,5 @@
-// Rays in storage order (see shear_view.h), eight neighbours at a time: what the kernel is given, as plain data, and its
-// entry points. One .cpp per instruction set compiles it.
+// Rays in storage order (see shear_view.h), eight neighbours at a time: what the kernel is given, as plain data, and
+// its entry points. One .cpp per instruction set compiles it.
 #pragma once
 
 #include <cstddef>

@@ -58,8 +58,8 @@ public:
         if (!m_looked) return;
         m_looked = false;
         const int n = m_next;
-        const bool ended = absorb(n, m_met[m_last], m_met[1 - m_last]) &&
-                           none((m_clear >= kDark) & (m_exit > static_cast<float>(n)));
+        const bool ended =
+            absorb(n, m_met[m_last], m_met[1 - m_last]) && none((m_clear >= kDark) & (m_exit > static_cast<float>(n)));
         m_last = 1 - m_last;
         --m_left;
         goOn(ended ? kEnded : n + 1);
@@ -88,7 +88,7 @@ private:
         m_way[0] = m_u0 * m_s.scale[1] + m_s.shift[0][1];
         m_way[1] = all(m_v0 * m_s.scale[1] + m_s.shift[1][1]);
         Vec8 square = Vec8{};
-        const auto component = [&](const float (&by)[3]) { return m_way[0] * by[0] + m_way[1] * by[1] + by[2]; };
+        const auto component = [&](const float(&by)[3]) { return m_way[0] * by[0] + m_way[1] * by[1] + by[2]; };
         m_right = component(m_s.right);
         m_down = component(m_s.down);
         m_ahead = component(m_s.ahead);
@@ -117,8 +117,12 @@ private:
         return true;
     }
 
-    Vec8 uAt(float w) const { return m_u0 * (m_s.scale[0] + w * m_s.scale[1]) + (m_s.shift[0][0] + w * m_s.shift[0][1]); }
-    float vAt(float w) const { return m_v0 * (m_s.scale[0] + w * m_s.scale[1]) + (m_s.shift[1][0] + w * m_s.shift[1][1]); }
+    Vec8 uAt(float w) const {
+        return m_u0 * (m_s.scale[0] + w * m_s.scale[1]) + (m_s.shift[0][0] + w * m_s.shift[0][1]);
+    }
+    float vAt(float w) const {
+        return m_v0 * (m_s.scale[0] + w * m_s.scale[1]) + (m_s.shift[1][0] + w * m_s.shift[1][1]);
+    }
 
     /// How many slices rays can go on from slice n before any leaves blocks that may be passed over; 0 where one may
     /// not.
@@ -179,7 +183,7 @@ private:
         if (w >= m_allIn && w + 1 <= m_allOut) {
             if constexpr (!kInvalid) {
                 if (none((next.sums[3] ^ last.sums[3]) | (next.sums[3] & 1))) return false;
-                return take(n, last, next, all(1), all(0), all(1));
+                return take(n, last, next, all(1));
             }
         }
         // The part of the way between the slices that lies within what is drawn.
@@ -199,11 +203,11 @@ private:
         Vec8 share = part;
         if constexpr (kInvalid) share *= 0.5f * (last.share + next.share);
         if (none((b.sums[3] ^ a.sums[3]) | (b.sums[3] & 1))) return false;
-        return take(n, a, b, share, from, to);
+        return take(n, a, b, share);
     }
 
-    /// `share` of the segment's length counts, from `from` to `to`.
-    bool take(int n, const Met& last, const Met& next, Vec8 share, Vec8 from, Vec8 to) {
+    /// `share` of the segment's length counts.
+    bool take(int n, const Met& last, const Met& next, Vec8 share) {
         Vec8 met[4]; // as the cells between count: red, green, blue, τ
         Vec8 way = toFloat(next.cell - last.cell);
         const Int8 resting = next.cell == last.cell;
@@ -222,8 +226,8 @@ private:
         depth *= share;
         depth = depth > 0 ? depth : Vec8{};
         if (none(depth > 0)) return false;
-        if constexpr (kLight) m_place = placeOf(n, last, next, from, to);
         if constexpr (kLight) {
+            m_place = n;
             if (m_scene.light.gradientOpacity > 0) {
                 Vec8 inCamera[3];
                 gradientInCamera(depth > 0, inCamera);
@@ -239,13 +243,6 @@ private:
             light(m_pending > kShearedLitAtOnce);
         }
         return true;
-    }
-
-    /// The slice nearest to the middle of what is absorbed by the ray that absorbs most.
-    int placeOf(int n, const Met&, const Met&, Vec8 from, Vec8 to) const {
-        (void)from;
-        (void)to;
-        return n;
     }
 
     Vec8 (&colors())[3] {
@@ -303,7 +300,7 @@ private:
     const PacketScene& m_scene;
     const Slices<Code>& m_slices;
     const Lighting& m_lighting;
-    int m_x, m_y; ///< of the first ray in the grid
+    int m_x, m_y;               ///< of the first ray in the grid
     int m_next = 0, m_left = 0; ///< slice; and how many to the next look at the blocks
     int m_last = 0;             ///< where what is met in slice m_next is in m_met
     bool m_known = false;       ///< whether it is
@@ -327,8 +324,8 @@ void castRow(const ShearedScene& s, const Slices<Code>& slices, const Lighting& 
     auto* const packets = reinterpret_cast<Packet*>(memory);
     int count = 0, first = kEnded, end = 0;
     for (int x = x0; x < x1; x += kWide, ++count) {
-        const Packet* const packet = ::new (memory + static_cast<std::size_t>(count) * sizeof(Packet))
-            Packet(s, slices, lighting, x, y);
+        const Packet* const packet =
+            ::new (memory + static_cast<std::size_t>(count) * sizeof(Packet)) Packet(s, slices, lighting, x, y);
         if (packet->next() == kEnded) continue;
         first = smaller(first, packet->next());
         end = larger(end, packet->end());

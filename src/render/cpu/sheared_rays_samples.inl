@@ -170,11 +170,8 @@ private:
     template <class T>
     static Vec8 ofPairs(const T* near, const T* far, const Lanes& l) {
         const Int8 a = pairsOfCodes(near, l.index), b = pairsOfCodes(far, l.index);
-        const auto between = [&](Int8 low, Int8 high) {
-            return toFloat(low) + l.fractionV * toFloat(high - low);
-        };
-        const Vec8 left = between(a & 0xffff, b & 0xffff),
-                   right = between(highHalves(a), highHalves(b));
+        const auto between = [&](Int8 low, Int8 high) { return toFloat(low) + l.fractionV * toFloat(high - low); };
+        const Vec8 left = between(a & 0xffff, b & 0xffff), right = between(highHalves(a), highHalves(b));
         return left + l.fraction * (right - left);
     }
     static Int8 highHalves(Int8 v) { return reinterpret_cast<Int8>(reinterpret_cast<UInt8>(v) >> 16); }
