@@ -223,6 +223,7 @@ private:
         add("saliency_direct_over_saliency", main(BenchRow::SaliencyDirect, threads), saliency, 1, ">= 3");
         const BenchResult* const refined = main(BenchRow::Refine500, threads);
         add("refine_direct_over_refine500", main(BenchRow::RefineDirect, threads), refined, 1, ">= 20");
+        add("preview_over_render", main(BenchRow::Preview, threads), main(BenchRow::Render, threads), 1, "");
         add("refine500_over_render", refined, main(BenchRow::Render, threads), 1, "<= 0.05");
         if (const BenchResult* const optimized = main(BenchRow::Optimize, threads, 8))
             add("optimize_over_sweeps", optimized, sweep8, optimized->extra.at("iterations").get<double>(), "<= 3");
@@ -277,6 +278,7 @@ private:
             if (r.row == BenchRow::Jacobian) label += ", " + std::to_string(*r.features) + " features";
             if (r.row == BenchRow::Optimize || r.row == BenchRow::OptimizeNewton || r.row == BenchRow::Threads)
                 label += ", " + j["iterations"].dump() + " moves";
+            if (j.contains("ssim")) label += ", SSIM " + fixedText(j["ssim"], 3);
             if (j.contains("speedup")) label += ", " + fixedText(j["speedup"], 2) + "x";
             if (r.row == BenchRow::OptimizeWhole) {
                 label += ", " + j["target"].get<std::string>();
@@ -353,9 +355,10 @@ Command addBench(CLI::App& program) {
     o->scene.camera.add(*app);
     o->scene.clip.add(*app);
     o->scene.engine.add(*app);
-    addValue(*app, "--only", "ROW,...", o->only, parseRows,
-             "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
-             "optimize-newton, threads, optimize-whole, refine, refine-500, refine-1000, refine-direct, render");
+    addValue(
+        *app, "--only", "ROW,...", o->only, parseRows,
+        "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
+        "optimize-newton, threads, optimize-whole, refine, refine-500, refine-1000, refine-direct, render, preview");
     addValue(
         *app, "--repeat", "N", o->repeat, wholeFrom(1, 1000),
         "runs of each row after a first one that does not count; the median is reported (default: 3, and more for rows "
@@ -367,12 +370,13 @@ Command addBench(CLI::App& program) {
             o->picture.width = size.width;
             o->picture.height = size.height;
         },
-        "pixels of the row \"render\" (default 512x512)");
+        "pixels of the rows \"render\" and \"preview\" (default 512x512)");
     addValue(*app, "--step", "D", o->picture.stepInD0, realAbove(0, 16),
-             "largest distance of samples in the row \"render\", in reference lengths (default 0.5)");
-    app->add_flag("--shading", o->picture.light.on, "draw the row \"render\" with light from the eye");
+             "largest distance of samples in the rows \"render\" and \"preview\", in reference lengths (default 0.5)");
+    app->add_flag("--shading", o->picture.light.on, "draw the rows \"render\" and \"preview\" with light from the eye");
     addValue(*app, "--orbit", "N", o->orbit, wholeFrom(1, 1000),
-             "views from all around that the row \"render\" draws; --json lists the time of each (default 1)");
+             "views from all around that the rows \"render\" and \"preview\" draw; --json lists the time of each "
+             "(default 1)");
     addOutputFile(*app, "--plot", o->plot,
                   "draw the seconds of the row \"threads\" over the number of threads: .svg or .png",
                   [](const std::string& path) { checkDrawingSuffix(path, "plots"); });

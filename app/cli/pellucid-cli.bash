@@ -45,7 +45,7 @@ _pellucid_cli() {
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
-            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton threads optimize-whole refine refine-500 refine-1000 refine-direct render"
+            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton threads optimize-whole refine refine-500 refine-1000 refine-direct render preview"
             ;;
         --slice) choices="x: y: z:" ;;
         --target) choices="equal diagonal inside-out only:" ;;

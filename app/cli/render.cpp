@@ -23,6 +23,7 @@ struct Options {
     SliceOptions slice;
     std::string out;
     AnnotationChoice annotate = AnnotationChoice::none();
+    bool preview = false;
 };
 
 /// "cube,scale" or "all".
@@ -51,6 +52,7 @@ void check(const Options& o) {
     refuse({{o.scene.picture.transparent && isJpeg(o.out), "a JPEG file cannot be transparent",
              "--background transparent", "write a PNG, TIFF or EXR file"}});
     o.slice.check();
+    refuse({{o.preview && slice, "a slice has no preview", "--preview", "leave it out"}});
     refuse({{field && mode, "a field is always drawn by emission and absorption", "--mode", "leave it out"},
             {slice && ground, "a slice is drawn without the ground", "--ground", "leave it out"},
             {field && ground, "a field is drawn without the ground", "--ground", "leave it out"},
@@ -98,6 +100,7 @@ struct Drawn {
     Image image;
     double seconds = 0;
     std::string engine = {}; ///< its name; empty: no engine has drawn it
+    std::string order = {};  ///< of a preview: "slices" in storage order, else "rays"
     Json slice = nullptr;    ///< where it lies; null: it is none
 };
 
@@ -120,13 +123,29 @@ Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& pictur
     return drawn;
 }
 
-Drawn drawView(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
-               Progress& progress) {
+Drawn drawPicture(const Scene& scene, const PictureInput& picture, Progress& progress) {
     const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
     Drawn drawn{renderer->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"))};
     drawn.seconds = drawing.seconds();
     drawn.engine = renderer->name();
+    return drawn;
+}
+
+/// What the window shows while the hand moves.
+Drawn drawPreview(const PictureInput& picture, Progress& progress) {
+    const auto renderer = makeCpuRenderer(picture.volume);
+    const Stopwatch drawing;
+    Drawn drawn{renderer->preview(picture.camera, picture.tf, picture.settings, 1, progress.phase("rendering"))};
+    drawn.seconds = drawing.seconds();
+    drawn.engine = renderer->name();
+    drawn.order = renderer->previewsInStorageOrder(picture.camera, picture.settings) ? "slices" : "rays";
+    return drawn;
+}
+
+Drawn drawView(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
+               Progress& progress) {
+    Drawn drawn = o.preview ? drawPreview(picture, progress) : drawPicture(scene, picture, progress);
     if (o.annotate.any())
         drawMarks(drawn.image, annotationMarks(field ? fieldAnnotationInput(picture, scene, *field, o.annotate)
                                                      : annotationInput(picture, o.annotate)));
@@ -140,6 +159,10 @@ Answer run(const Options& o, Progress& progress) {
     if (field || !o.scene.sessionFile) checkSlice(o, field);
     const Opened opened = resolve(o.scene, progress, {field ? toMeasureAndDrawField() : toView("drawing"), field});
     const Scene& scene = opened.scene;
+    const EngineChoice engine = scene.session.measure->engine;
+    refuse({{o.preview && o.scene.engine.given.has("engine") && engine != EngineChoice::Auto &&
+                 engine != EngineChoice::Cpu,
+             "only the cpu engine draws previews", "--preview", "give --engine cpu, or leave out --preview"}});
     PictureInput picture = o.scene.picture.pictureOf(scene);
     checkSlice(o, scene.session.field->kind.has_value());
     const std::optional<Field> shown = fieldOf(scene, progress);
@@ -157,6 +180,7 @@ Answer run(const Options& o, Progress& progress) {
         drawn.slice.is_null() ? "engine " + drawn.engine : "slice " + drawn.slice["name"].get<std::string>();
     Json json{{"command", "render"}};
     if (!drawn.engine.empty()) json["engine"] = drawn.engine;
+    if (o.preview) json["preview"] = drawn.order;
     json["volume"] = jsonFromVolume(*scene.volume);
     json["file"] = o.out;
     json["size"] = {width, height};
@@ -187,6 +211,8 @@ Command addRender(CLI::App& program) {
     addValue(*app, "--annotate", "PARTS", o->annotate, parseParts,
              "draw annotations over the picture: all, or some of cube, letters, axes, scale, legend, title with "
              "commas between");
+    app->add_flag("--preview", o->preview,
+                  "draw the quick picture that the window shows while the view turns, by the cpu renderer");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -14,6 +14,8 @@
 #include "optimize/optimizer.h"
 #include "optimize/ray_vws.h"
 #include "optimize/refine/refine.h"
+#include "render/image_renderer.h"
+#include "render/ssim.h"
 #include "saliency/saliency_direct.h"
 #include "volume/histogram.h"
 
@@ -122,6 +124,7 @@ public:
         if (wanted(Refine1000)) addPaletteClick(Refine1000, refine, kMoreIterations);
         if (wanted(RefineDirect)) addPaletteClick(RefineDirect, refineReference, kClickIterations);
         if (wanted(Render)) addRender();
+        if (wanted(Preview)) addPreview(job);
     }
     CaseBench(const CaseBench&) = delete; // the measurements refer to it
     CaseBench& operator=(const CaseBench&) = delete;
@@ -334,29 +337,64 @@ private:
 
     void addRender() {
         const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_case.volume);
-        for (RenderSettings settings : m_options.pictures) {
-            settings.clipping = m_case.view.clipping;
-            BenchResult r = row(BenchRow::Render, renderer->name());
-            r.extra = {{"size", {settings.width, settings.height}}};
-            if (settings.light.on) r.extra["lit"] = true;
-            if (m_options.orbit > 1)
-                r.extra.update(
-                    {{"frames", nlohmann::ordered_json::array()}, {"cpu_frames", nlohmann::ordered_json::array()}});
-            add(
-                r, voxels() * kBytesPerCode,
-                [this, renderer, settings](BenchResult& result, const JobControl& j) {
-                    for (int i = 0; i < m_options.orbit; ++i) {
-                        const double angle = 2 * std::numbers::pi * i / m_options.orbit;
-                        const Stopwatch watch;
-                        const double cpuStart = cpuSeconds();
-                        renderer->render(turned(m_case.view.camera, angle), m_case.tf, settings, j);
-                        if (m_options.orbit == 1) continue;
-                        result.extra["frames"].push_back(watch.seconds());
-                        result.extra["cpu_frames"].push_back(cpuSeconds() - cpuStart);
-                    }
-                },
-                m_options.orbit);
+        for (const RenderSettings& settings : pictures())
+            addPictures(pictureRow(BenchRow::Render, renderer->name(), settings),
+                        [renderer, settings, this](const Camera& camera, const JobControl& j) {
+                            return renderer->render(camera, m_case.tf, settings, j);
+                        });
+    }
+
+    /// What the cpu renderer shows while the hand moves, and how alike it is to the picture.
+    void addPreview(const JobControl& job) {
+        const std::shared_ptr<TileRenderer> renderer = makeCpuRenderer(m_case.volume);
+        for (const RenderSettings& settings : pictures()) {
+            BenchResult r = pictureRow(BenchRow::Preview, renderer->name(), settings);
+            double least = 1;
+            for (int i = 0; i < m_options.orbit; ++i) {
+                const Camera camera = viewOf(i);
+                least = std::min(least, ssim(renderer->render(camera, m_case.tf, settings, job),
+                                             renderer->preview(camera, m_case.tf, settings, 1, job)));
+            }
+            r.extra["ssim"] = least;
+            addPictures(std::move(r), [renderer, settings, this](const Camera& camera, const JobControl& j) {
+                return renderer->preview(camera, m_case.tf, settings, 1, j);
+            });
         }
+    }
+
+    std::vector<RenderSettings> pictures() const {
+        std::vector<RenderSettings> all = m_options.pictures;
+        for (RenderSettings& settings : all) settings.clipping = m_case.view.clipping;
+        return all;
+    }
+    Camera viewOf(int i) const { return turned(m_case.view.camera, 2 * std::numbers::pi * i / m_options.orbit); }
+
+    BenchResult pictureRow(BenchRow which, const std::string& engine, const RenderSettings& settings) const {
+        BenchResult r = row(which, engine);
+        r.extra = {{"size", {settings.width, settings.height}}};
+        if (settings.light.on) r.extra["lit"] = true;
+        if (m_options.orbit > 1)
+            r.extra.update(
+                {{"frames", nlohmann::ordered_json::array()}, {"cpu_frames", nlohmann::ordered_json::array()}});
+        return r;
+    }
+
+    /// Times `draw` from all views.
+    template <class Draw>
+    void addPictures(const BenchResult& r, const Draw& draw) {
+        add(
+            r, voxels() * kBytesPerCode,
+            [this, draw](BenchResult& result, const JobControl& j) {
+                for (int i = 0; i < m_options.orbit; ++i) {
+                    const Stopwatch watch;
+                    const double cpuStart = cpuSeconds();
+                    draw(viewOf(i), j);
+                    if (m_options.orbit == 1) continue;
+                    result.extra["frames"].push_back(watch.seconds());
+                    result.extra["cpu_frames"].push_back(cpuSeconds() - cpuStart);
+                }
+            },
+            m_options.orbit);
     }
 
     const BenchCase& m_case;

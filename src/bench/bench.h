@@ -35,13 +35,14 @@ enum class BenchRow {
     Refine500,
     Refine1000,
     RefineDirect,
-    Render
+    Render,
+    Preview ///< the same pictures as the cpu renderer draws them while the hand moves
 };
 template <>
 inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices",
                                                      "jacobian", "optimize", "optimize-newton", "threads",
                                                      "optimize-whole", "refine", "refine-500", "refine-1000",
-                                                     "refine-direct", "render");
+                                                     "refine-direct", "render", "preview");
 
 /// One line of the table.
 struct BenchResult {
@@ -98,7 +99,7 @@ struct BenchOptions {
     std::optional<int> repeat; ///< runs of each row after a warm-up; else as many as tell enough, 3 at least
     EngineChoice engine = EngineChoice::Auto;
     Quality quality = Quality::Normal;
-    std::vector<RenderSettings> pictures{{}}; ///< a row `render` of each
+    std::vector<RenderSettings> pictures{{}}; ///< a row `render` and a row `preview` of each
     int orbit = 1; ///< those rows draw so many views from all around (axis: z), and tell the time of each
 };
 

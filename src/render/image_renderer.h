@@ -34,6 +34,9 @@ public:
     /// whose pixels are 1/scale pixels of the picture wide, so that its right and lower edge may reach beyond that.
     virtual Image preview(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
                           double scale, const JobControl& job = {}) = 0;
+    /// Whether preview() draws it in storage order, from slice to slice: quickly, and nearly as render() does
+    /// (docs/method.md, "The quick picture"). Else it is render() with fewer rays.
+    virtual bool previewsInStorageOrder(const Camera& camera, const RenderSettings& settings) const = 0;
     /// Draws the picture into `image`, which has its size, outward from the pixel (x, y); the pixels are those of
     /// render(). `done` is called after each part, from any thread, by one at a time. Where it is stopped (Cancelled),
     /// the parts that were done stay.

@@ -18,8 +18,8 @@ inline constexpr double kFieldBytesPerVoxel = 8;
 inline constexpr double kMoreByReferenceBytesPerVoxel = 5, kLeanMoreByReferenceBytesPerVoxel = 8;
 /// The published profile's weights are never compact.
 inline constexpr double kMoreByPublishedLeanBytesPerVoxel = 3;
-/// To look at a volume takes its codes, and which are valid.
-inline constexpr double kViewBytesPerVoxel = 3, kLeanViewBytesPerVoxel = 1;
+/// To look at a volume takes its codes, and which are valid, and both again in another order. Lean: codes alone.
+inline constexpr double kViewBytesPerVoxel = 6, kLeanViewBytesPerVoxel = 1;
 
 inline MemoryUse toMeasure(std::string doing) {
     return {std::move(doing), kMeasureBytesPerVoxel, kLeanMeasureBytesPerVoxel};

@@ -67,7 +67,9 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
     }
     CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
                                          "optimize-newton", "threads", "optimize-whole", "refine", "refine-500",
-                                         "refine-1000", "refine-direct", "render"});
+                                         "refine-1000", "refine-direct", "render", "preview"});
+
+    for (const json& row : rowsNamed(j, "preview")) CHECK(row["ssim"].get<double>() > 0.95);
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
     const auto sweeps = rowsNamed(j, "sweep");

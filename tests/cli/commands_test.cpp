@@ -9,6 +9,7 @@
 #include "base/round_numbers.h"
 #include "cli_runner.h"
 #include "image_io/image_file.h"
+#include "render/ssim.h"
 #include "volume/loader.h"
 
 using namespace pellucid;
@@ -411,6 +412,27 @@ TEST_CASE("fields writes volumes whose sums are the measures", "[cli]") {
         CHECK(features[f].saturation / all.saturation == Approx(m["vws_saturation"].get<double>()).margin(1e-5));
         CHECK(features[f].vws == Approx(m["vws"].get<double>()).margin(1e-5));
     }
+}
+
+TEST_CASE("render --preview writes the quick picture and says in which order it was drawn", "[cli]") {
+    const Workshop w;
+    const Words base{"render", "sample:shells", "--sample-size", "24", "--size", "64x48", "--tf", "tents:3:0.25"};
+    const auto rendered = [&](const std::string& file, const Words& options) {
+        return w.json(base + options + Words{"--out", file});
+    };
+    const json quick = rendered("quick.png", {"--preview"});
+    CHECK(quick["preview"] == "slices");
+    CHECK(quick["engine"] == "cpu");
+    CHECK_FALSE(rendered("full.png", {"--engine", "cpu"}).contains("preview"));
+    CHECK(ssim(readImage(w.path("quick.png").string()), readImage(w.path("full.png").string())) > 0.97);
+    CHECK(rendered("mip.png", {"--preview", "--mode", "mip"})["preview"] == "rays");
+
+    for (const Words& wrong : {Words{"--slice", "z:0.5"}, Words{"--engine", "gl"}}) {
+        const Outcome refused = w.run(base + wrong + Words{"--preview", "--out", "none.png"});
+        CHECK(refused.status == 2);
+        CHECK(refused.err.find("--preview") != std::string::npos);
+    }
+    CHECK_FALSE(w.has("none.png"));
 }
 
 TEST_CASE("render writes a picture of the asked size over the asked background", "[cli]") {

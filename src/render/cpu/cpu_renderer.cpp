@@ -14,6 +14,7 @@
 #include "render/ambient_occlusion.h"
 #include "render/cpu/ray_packets.h"
 #include "render/cpu/ray_table.h"
+#include "render/cpu/sheared_picture.h"
 #include "render/ground_raster.h"
 #include "render/ray_blocks.h"
 
@@ -37,13 +38,17 @@ PacketMode packetMode(RenderMode mode) { return static_cast<PacketMode>(mode); }
 class CpuRenderer final : public TileRenderer {
 public:
     CpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options)
-        : m_volume(std::move(volume)), m_options(options), m_grid(sharedIntensityGrid(*m_volume)), m_blocks(*m_grid) {}
+        : m_volume(std::move(volume)), m_options(options), m_grid(sharedIntensityGrid(*m_volume)), m_blocks(*m_grid),
+          m_sheared(*m_grid, m_volume->geometry(), options.kernel) {}
 
     std::string name() const override { return "cpu"; }
 
     Image render(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
                  const JobControl& job) override {
-        return preview(camera, tf, settings, 1, job);
+        settings.validate();
+        Image image(settings.width, settings.height);
+        draw(camera, tf, settings, 1, image, tilesOf(image), {}, job);
+        return image;
     }
 
     Image preview(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
@@ -52,8 +57,13 @@ public:
         settings.validate();
         const auto scaled = [scale](int pixels) { return static_cast<int>(std::ceil(pixels * scale - 1e-9)); };
         Image image(scaled(settings.width), scaled(settings.height));
-        draw(camera, tf, settings, scale, image, tilesOf(image), {}, job);
+        if (!drawSheared(camera, tf, settings, scale, image, job))
+            draw(camera, tf, settings, scale, image, tilesOf(image), {}, job);
         return image;
+    }
+
+    bool previewsInStorageOrder(const Camera& camera, const RenderSettings& settings) const override {
+        return shearOf(camera, settings, 1).has_value();
     }
 
     void refine(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, Image& image, int x,
@@ -81,19 +91,7 @@ private:
     void draw(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
               Image& image, const std::vector<ImagePart>& tiles, const std::function<void(const ImagePart&)>& done,
               const JobControl& job) {
-        camera.validate(m_volume->geometry(), "camera");
-        prepare(tf, settings);
-        PacketScene scene;
-        fillVolume(scene);
-        fillColors(settings, scene);
-        fillCamera(camera, settings, scale, scene);
-        fillRegion(settings, scene);
-        fillMode(tf, settings, scene);
-        fillLight(camera, settings, scene);
-        scene.width = image.width;
-        scene.height = image.height;
-        scene.rgba = image.rgba.data();
-        scene.leap = m_options.leap;
+        PacketScene scene = sceneOf(camera, tf, settings, scale, image);
         const GroundPicture ground = groundUnder(camera, settings, scale, image, job);
         if (!ground.depth.empty()) {
             scene.groundDepth = ground.depth.data();
@@ -112,6 +110,41 @@ private:
             }
             job.report(static_cast<double>(++count) / static_cast<double>(tiles.size()));
         });
+    }
+
+    /// False where the picture cannot be drawn in storage order.
+    bool drawSheared(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
+                     Image& image, const JobControl& job) {
+        const auto view = shearOf(camera, settings, scale);
+        if (!view) return false;
+        m_sheared.draw(sceneOf(camera, tf, settings, scale, image), camera, *view, job);
+        return true;
+    }
+
+    std::optional<ShearView> shearOf(const Camera& camera, const RenderSettings& settings, double scale) const {
+        if (!m_options.sheared || !ShearedPicture::canDraw(settings)) return {};
+        camera.validate(m_volume->geometry(), "camera");
+        return pellucid::shearOf(camera, m_volume->geometry(), settings.clipping, settings.width * scale,
+                                 settings.height * scale, m_options.density);
+    }
+
+    /// All but the ground.
+    PacketScene sceneOf(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
+                        Image& image) {
+        camera.validate(m_volume->geometry(), "camera");
+        prepare(tf, settings);
+        PacketScene scene;
+        fillVolume(scene);
+        fillColors(settings, scene);
+        fillCamera(camera, settings, scale, scene);
+        fillRegion(settings, scene);
+        fillMode(tf, settings, scene);
+        fillLight(camera, settings, scene);
+        scene.width = image.width;
+        scene.height = image.height;
+        scene.rgba = image.rgba.data();
+        scene.leap = m_options.leap;
+        return scene;
     }
 
     /// Empty where the picture has none.
@@ -302,6 +335,7 @@ private:
     CpuRenderOptions m_options;
     std::shared_ptr<const IntensityGrid> m_grid;
     RayBlocks m_blocks;
+    ShearedPicture m_sheared;
     Prepared m_prepared; ///< of what follows
     std::optional<RayTable> m_table;
     std::vector<std::uint8_t> m_distances;

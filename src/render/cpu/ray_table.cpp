@@ -62,11 +62,13 @@ void RayTable::integrate(const std::vector<double>& tau, const std::vector<std::
         const std::int32_t next = 2 * inUnits(sum);
         if (next != m_integral[i]) m_integral[i] |= 1;
         m_integral[i + 1] = next;
+        m_colors[4 * i + 3] = m_integral[i];
         for (std::size_t c = 0; c < 3; ++c) {
             colors[c] += emission[i][c];
             m_colors[4 * (i + 1) + c] = inUnits(colors[c]);
         }
     }
+    m_colors[4 * m_cells + 3] = m_integral[m_cells];
 }
 
 bool RayTable::isOpaque(int low, int high) const {
