@@ -5,7 +5,7 @@
         --sheet docs/images/first_sight.png
 
 Opens the built-in samples, volumes that are made up here (an outlier of 1e6, NaN, labels, ...) and the files under
---data, from the home view, and prints of each:
+--data, from the view that each opens on, and prints of each:
 
     translucent   part of the pixels inside the projected object whose alpha lies in (0.05, 0.95); wanted 2 to 98 %.
                   The object: pixels whose alpha exceeds one half where every feature is solid.
@@ -141,6 +141,9 @@ def grey_entropy(rgba):
 def look(cli, name, volume, scratch):
     tf = scratch / "auto.tf.json"
     kind = run(cli, "propose", *volume, "--out-tf", str(tf), "--json")
+    camera = scratch / "opening.camera.json"
+    camera.write_text(json.dumps(kind["camera"]))
+    volume = [*volume, "--camera", str(camera)]  # tents:3, too: its own view would be that of the box
     auto = ("--tf", str(tf))
     lit = picture(cli, volume, scratch, "--shading", *auto)
     alpha = picture(cli, volume, scratch, "--background", "transparent", *auto)[..., 3] / 255

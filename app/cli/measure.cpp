@@ -12,6 +12,7 @@
 #include "report/drawing_file.h"
 #include "report/share_bars.h"
 #include "resolve.h"
+#include "results_json.h"
 
 namespace pellucid::cli {
 
@@ -149,6 +150,8 @@ Json jsonOf(const Scene& scene, const Found& found) {
               {"features", features},
               {"coverage", m.coverage->coverage},
               {"visibility_histogram", m.visibilityHistogram}};
+    if (scene.session.measure->profile == Profile::Default)
+        json.update(jsonFromView(scene.camera, scene.volume->geometry()));
     if (matrices.jacobian) json["jacobian"] = *matrices.jacobian;
     if (matrices.occlusion) json["occlusion"] = *matrices.occlusion;
     if (pictured) {

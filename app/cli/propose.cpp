@@ -4,9 +4,12 @@
 #include "base/round_numbers.h"
 #include "commands.h"
 #include "optimize/answer/first_sight.h"
+#include "optimize/views/opening_view.h"
 #include "output_files.h"
 #include "parse.h"
+#include "render/holder.h"
 #include "resolve.h"
+#include "results_json.h"
 #include "tf/formats/tf_json.h"
 
 namespace pellucid::cli {
@@ -66,18 +69,41 @@ Json jsonOf(const Proposal& p, const std::vector<double>& targets, double second
     return json;
 }
 
+/// What leaves a holder out, as options: "--clip x:0.1:0.9 --clip y:0:0.8".
+std::vector<std::string> clipsWithout(const Holder& holder) {
+    std::vector<std::string> clips;
+    for (int a = 0; a < 3; ++a) {
+        const double lo = holder.without.lo[a], hi = holder.without.hi[a];
+        if (lo > 0 || hi < 1)
+            clips.push_back(std::string(1, "xyz"[a]) + ":" + fixedText(lo, 3) + ":" + fixedText(hi, 3));
+    }
+    return clips;
+}
+
+std::string textOf(const Holder& holder) {
+    std::string options;
+    for (const std::string& clip : clipsWithout(holder)) options += " --clip " + clip;
+    return std::string("the object lies on a board or holder, which runs along ") + "xyz"[holder.along] + " at " +
+           (holder.isHigh ? "high " : "low ") + "xyz"[holder.axis] + ":" + options + " leaves it out";
+}
+
 Answer run(const Options& o, Progress& progress) {
     Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Stopwatch looking;
     const Volume& volume = *opened.scene.volume;
     Proposal proposal = propose(volume, progress.phase("looking at the data"));
     const Volume seen = proposal.window == volume.range() ? volume : volume.withRange(proposal.window);
-    const View home(homeCamera(volume.geometry(), Projection::Perspective));
+    const View home(openingView(seen, proposal.tf));
     const FirstSight sight = withOpacitiesForView(seen, proposal, proposal.tf, home);
     proposal.tf = sight.tf;
+    const std::optional<Holder> holder = findHolder(seen, proposal.tf);
+    if (holder) proposal.why.push_back(textOf(*holder));
     const double seconds = looking.seconds();
     if (o.outTf) writeTf(proposal.tf, *o.outTf);
-    return {textOf(proposal, sight.shares, seconds), jsonOf(proposal, sight.shares, seconds), opened.notices()};
+    Json json = jsonOf(proposal, sight.shares, seconds);
+    json.update(jsonFromView(home.camera, volume.geometry()));
+    if (holder) json["holder"] = {{"clip", clipsWithout(*holder)}, {"lost", holder->lost}};
+    return {textOf(proposal, sight.shares, seconds), std::move(json), opened.notices()};
 }
 
 } // namespace

@@ -13,6 +13,7 @@
 #include "render/background.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
+#include "results_json.h"
 
 namespace pellucid::cli {
 
@@ -184,7 +185,10 @@ Answer run(const Options& o, Progress& progress) {
     json["volume"] = jsonFromVolume(*scene.volume);
     json["file"] = o.out;
     json["size"] = {width, height};
-    if (!drawn.slice.is_null()) json["slice"] = std::move(drawn.slice);
+    if (drawn.slice.is_null())
+        json.update(jsonFromView(picture.camera, picture.volume->geometry()));
+    else
+        json["slice"] = std::move(drawn.slice);
     json["seconds"] = {{"render", drawn.seconds}, {"total", total.seconds()}};
     addMapping(json, scene);
     if (shown) json["field"] = jsonFromField(scene, *shown);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "optimize/views/opening_view.h"
 #include "render/published_engine.h"
 #include "session/scene_data.h"
 #include "tf/color_maps.h"
@@ -205,9 +206,22 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     return scene;
 }
 
-FirstSight tunedStart(const Scene& scene, const JobControl& job) {
-    const View home(homeCamera(scene.volume->geometry(), Projection::Perspective));
+namespace {
+
+/// What a scene that has a proposal opens with, wherever somebody looks at it from and whatever is cut away: a volume
+/// has one automatic start.
+Camera openingViewOf(const Scene& scene, const JobControl& job) {
+    return openingView(*scene.volume, scene.proposal->tf, {job.stop, {}});
+}
+
+FirstSight tunedFrom(const Scene& scene, const Camera& home, const JobControl& job) {
     return withOpacitiesForView(*scene.volume, *scene.proposal, scene.tf, home, {job.stop, {}});
+}
+
+} // namespace
+
+FirstSight tunedStart(const Scene& scene, const JobControl& job) {
+    return tunedFrom(scene, openingViewOf(scene, job), job);
 }
 
 void setStart(Session& session, const FirstSight& start) {
@@ -285,8 +299,11 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
             scene = resolve(scene.session, scene, inputs.then, job);
         }
     }
+    // Under a transfer function that somebody gives it is the box that fits, so that the figures of several compare.
+    std::optional<Camera> home;
+    if (scene.proposal) home = openingViewOf(scene, job);
     if (inputs.start == SceneInputs::Start::Tuned && scene.proposal) {
-        setStart(scene.session, tunedStart(scene, job));
+        setStart(scene.session, tunedFrom(scene, *home, job));
         resolveTf(scene);
     }
     if (proposesFirst) {
@@ -296,7 +313,10 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
         scene = resolve(std::move(mapped), scene, inputs.then, job);
         scene.proposal = proposal;
     }
-    scene.camera = cameraOf(inputs, scene.volume->geometry());
+    const bool isAsked = inputs.camera || inputs.view || inputs.namedView || inputs.session.camera;
+    scene.camera = home && !isAsked ? withProjection(*home, scene.volume->geometry(),
+                                                     inputs.projection.value_or(Projection::Perspective))
+                                    : cameraOf(inputs, scene.volume->geometry());
     if (inputs.camera || inputs.view || inputs.namedView || inputs.projection) scene.session.camera = scene.camera;
     return scene;
 }

@@ -105,3 +105,50 @@ TEST_CASE("propose in Hounsfield units says so", "[cli][propose]") {
     CHECK(j["features"][0]["name"] == "skin and fat");
     CHECK(j["features"].back()["range"][1] == j["window"][1]);
 }
+
+TEST_CASE("propose names the view that a volume opens on, and what leaves a board out", "[cli][propose]") {
+    const Workshop w;
+    std::string bytes; // a ball of radius 12 on a board of 3 voxels at low y, which runs along z
+    for (int k = 0; k < 40; ++k)
+        for (int j = 0; j < 40; ++j)
+            for (int i = 0; i < 40; ++i) {
+                const bool board = j < 3 && i >= 2 && i < 38;
+                const bool ball = std::hypot(i - 19.5, j - 14.5, k - 19.5) < 12;
+                bytes += static_cast<char>(board || ball ? 150 + 20 * ((i + j + k) % 2) : (i * j + k) % 5);
+            }
+    w.write("onboard.raw", bytes);
+    const std::vector<std::string> volume{"onboard.raw", "--raw", "40,40,40,u8"};
+    const auto with = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+        words.insert(words.begin() + 1, volume.begin(), volume.end());
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const json j = w.json(with({"propose"}, {}));
+    std::vector<std::string> options;
+    REQUIRE(j["holder"]["clip"].size() >= 1);
+    for (const json& clip : j["holder"]["clip"]) {
+        options.emplace_back("--clip");
+        options.push_back(clip);
+    }
+    CHECK(j["holder"]["lost"].get<double>() < 0.05);
+    CHECK(j["why"].dump().find("board") != std::string::npos);
+    CHECK(j["camera"]["eye"][1].get<double>() > 0); // not from the board's side
+
+    // Every command looks from there, says so, and takes the clip box.
+    const json measured = w.json(with({"measure"}, {"--engine", "cpu"}));
+    CHECK(measured["camera"] == j["camera"]);
+    const json drawn = w.json(with({"render"}, {"--out", "a.png", "--size", "64x64", "--engine", "cpu"}));
+    CHECK(drawn["camera"] == j["camera"]);
+    CHECK(drawn["view"] == j["view"]);
+    w.json(with({"render"}, [&] {
+        std::vector<std::string> more{"--out", "b.png", "--size", "64x64", "--engine", "cpu"};
+        more.insert(more.end(), options.begin(), options.end());
+        return more;
+    }()));
+    CHECK(w.read("a.png") != w.read("b.png"));
+    // Under a transfer function of one's own it is the view of the box, whatever that shows.
+    const json tents = w.json(with({"measure"}, {"--engine", "cpu", "--tf", "tents:3"}));
+    CHECK(tents["view"]["azimuth"].get<double>() == Approx(30));
+    CHECK(tents["camera"] == w.json(with({"measure"}, {"--engine", "cpu", "--tf", "ramp:5"}))["camera"]);
+    CHECK_FALSE(w.json({"propose", "sample:disks", "--size", "32"}).contains("holder"));
+}

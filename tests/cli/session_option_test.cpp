@@ -256,7 +256,7 @@ TEST_CASE("a session that cannot be used fails as files do", "[cli][session]") {
     fails({"measure", "--session", "a.pellucid.json"}, 1, "knee.nrrd");
 }
 
-TEST_CASE("without a view the whole box is seen, as the window opens", "[cli]") {
+TEST_CASE("without a view what is drawn fills the picture, as the window opens", "[cli]") {
     const Workshop w;
     const auto rendered = [&](const std::string& file, std::vector<std::string> options) {
         options.insert(options.begin(), {"render", "sample:shells", "--sample-size", "16", "--size", "48x48",

@@ -89,6 +89,56 @@ TEST_CASE("values far off are said to lie beyond, and a click brings the full ra
     CHECK(litShare(w.picture()) == Approx(litShare(full)).margin(0.1)); // values keep their opacity
 }
 
+TEST_CASE("a board on which an object lies is behind it, and a click leaves it out", "[first sight]") {
+    const TempFolder folder;
+    std::string bytes;
+    for (int k = 0; k < 40; ++k)
+        for (int j = 0; j < 40; ++j)
+            for (int i = 0; i < 40; ++i) {
+                const bool board = j < 3 && i >= 2 && i < 38;
+                const bool ball = std::hypot(i - 19.5, j - 14.5, k - 19.5) < 12;
+                bytes.push_back(static_cast<char>(board || ball ? 150 + 20 * ((i + j + k) % 2) : (i * j + k) % 5));
+            }
+    OpenWindow w;
+    VolumeSource source;
+    source.path = folder.write("onboard.raw", bytes);
+    source.raw = RawLayout{{40, 40, 40}, SampleType::U8, false, {1, 1, 1}, 0};
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return w.document().volume()->title == "onboard.raw"; }));
+    w.settle();
+    // The board lies at low y: the eye does not.
+    const Camera opened = w.document().camera();
+    CHECK(opened.forward().y < 0.1);
+    REQUIRE(noticeText(w).contains("board"));
+    CHECK(w.services().store().session().clipping->isNone());
+
+    QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
+    w.settle();
+    CHECK(w.services().store().undoText() == "Leave out the holder");
+    const Clipping cut = *w.services().store().session().clipping;
+    CHECK(cut.lo.y >= 3.0 / 40);
+    CHECK(cut.lo.y <= 5.0 / 40);
+    CHECK_FALSE(w.document().camera() == opened); // what is left fills the picture
+    REQUIRE(noticeText(w).contains("cut away"));
+    QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
+    w.settle();
+    CHECK(w.services().store().session().clipping->isNone());
+    w.child<QAction>("undoAction").trigger();
+    CHECK(*w.services().store().session().clipping == cut);
+}
+
+TEST_CASE("Home goes back to the view that a volume opened with", "[first sight]") {
+    const TempFolder folder;
+    OpenWindow w;
+    w.opening().openVolume(boxesWithOutlier(folder));
+    REQUIRE(waitFor([&] { return w.document().volume()->title == "boxes.raw"; }));
+    w.settle();
+    const Camera opened = w.document().camera();
+    w.document().setCamera(cameraFromView(w.document().volume()->geometry(), 100, -50, 2, Projection::Perspective));
+    w.child<QAction>("resetViewAction").trigger();
+    CHECK(w.document().camera() == opened); // whatever opacities have come meanwhile
+}
+
 TEST_CASE("who edits at once keeps what he has done", "[first sight]") {
     const TempFolder folder;
     OpenWindow w;

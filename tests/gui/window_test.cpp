@@ -33,6 +33,7 @@
 #include "image_io/image_file.h"
 #include "optimize/refine/refine.h"
 #include "render/camera_motion.h"
+#include "session/home_view.h"
 #include "tf/formats/tf_json.h"
 
 using namespace pellucid;
@@ -312,7 +313,7 @@ TEST_CASE("the mouse turns, pans and zooms, and R fits, Home goes back", "[windo
     QTest::mouseDClick(&view, Qt::LeftButton, {}, middle.toPoint());
     const Camera fit = w.document().camera();
     CHECK(glm::length(fit.forward() - turned.forward()) < 1e-9);
-    CHECK(glm::length(fit.center - geometry.boxCenter()) < 1e-9);
+    CHECK(glm::length(fit.eye - fittedView(w.services().scene(), turned).eye) < 1e-6);
 
     view.setFocus();
     QTest::keyClick(&view, Qt::Key_Left);
@@ -328,7 +329,7 @@ TEST_CASE("the mouse turns, pans and zooms, and R fits, Home goes back", "[windo
     CHECK(glm::length(w.document().camera().eye - byKey.eye) < 1e-9);
     CHECK(w.document().camera().fovY == Approx(byKey.fovY));
     QTest::keyClick(&view, Qt::Key_Home);
-    CHECK(w.document().camera() == start);
+    CHECK(glm::length(w.document().camera().eye - homeView(w.services().scene(), Projection::Perspective).eye) < 1e-9);
     QTest::keyClick(&view, Qt::Key_5); // from above
     CHECK(viewAngles(w.document().camera(), geometry).elevation == Approx(90));
     QTest::keyClick(&view, Qt::Key_P);

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/error.h"
+#include "optimize/views/opening_view.h"
 #include "render/camera_motion.h"
 #include "session/scene.h"
 #include "support/outlier_boxes.h"
@@ -285,10 +286,14 @@ TEST_CASE("the camera: what is asked for, else the session's, else the home view
     SceneInputs in = files.inputs();
     const Scene home = openScene(in);
     const Geometry geometry = home.volume->geometry();
-    CHECK(home.camera == homeCamera(geometry, Projection::Perspective));
+    const Camera opening = openingView(*home.volume, home.proposal->tf);
+    CHECK(home.camera == opening);
     CHECK_FALSE(home.session.camera);
     in.projection = Projection::Orthographic;
+    CHECK(openScene(in).camera == withProjection(opening, geometry, Projection::Orthographic));
+    in.tf = "tents:3"; // the same view for all that somebody gives
     CHECK(openScene(in).camera == homeCamera(geometry, Projection::Orthographic));
+    in.tf.reset();
     in.view = ViewAngles{10, 20, 3};
     CHECK(openScene(in).camera == cameraFromView(geometry, 10, 20, 3, Projection::Orthographic));
     in.projection.reset();

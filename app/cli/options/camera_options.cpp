@@ -19,7 +19,9 @@ void CameraOptions::add(CLI::App& app) {
             "inferior, front, back, top, bottom; zoom 1 fits the sphere around the box" +
                 std::string(mayBeBest ? "; best: found together with the opacities" : "") +
                 " (default: the session's camera, else " +
-                std::string(fallback ? "30,20)" : "30,20 with the box as large as it fits, as the window opens)"));
+                std::string(fallback ? "30,20)"
+                                     : "the view that the window opens on, fitted to what is drawn; with a --tf of "
+                                       "yours 30,20, fitted to the box)"));
     app.add_flag("--orthographic", orthographic, "parallel rays (default: perspective)")->group(kGroup);
 }
 

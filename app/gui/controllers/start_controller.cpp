@@ -1,8 +1,10 @@
 #include "controllers/start_controller.h"
 
 #include "controllers/open_controller.h"
+#include "render/holder.h"
 #include "services/services.h"
 #include "store/edits.h"
+#include "store/view_edits.h"
 #include "widgets/number_text.h"
 
 namespace pellucid::gui {
@@ -19,6 +21,27 @@ QString namesOf(const Proposal& proposal) {
 QString percentText(double share) {
     if (!(share >= 1e-5)) return QObject::tr("under 0.001 %");
     return QString::number(100 * share, 'g', 2) + QStringLiteral(" %");
+}
+
+/// What the object lies on can be cut away, where it is found and nothing is cut away yet.
+void offerToLeaveOutHolder(Services& services) {
+    const Scene& scene = services.scene();
+    if (!scene.session.clipping->isNone()) return;
+    const std::optional<Holder> holder = findHolder(*scene.volume, scene.proposal->tf);
+    if (!holder) return;
+    const auto cutTo = [&services](const QString& text, const Clipping& clipping) {
+        if (!services.isEditable()) return;
+        services.store().edit(text, {}, [&](Session& session) { session.clipping.set(clipping); });
+        fitView(services.store());
+    };
+    const auto bringBack = [cutTo] { cutTo(QObject::tr("Show the holder"), {}); };
+    const auto leaveOut = [&services, cutTo, bringBack, clipping = holder->without] {
+        cutTo(QObject::tr("Leave out the holder"), clipping);
+        services.notices().add({QObject::tr("The board or holder is cut away: it is neither drawn nor measured."),
+                                {{QObject::tr("Show it"), bringBack}}});
+    };
+    services.notices().add({QObject::tr("The object lies on a board or holder that runs from border to border."),
+                            {{QObject::tr("Leave it out"), leaveOut}}});
 }
 
 } // namespace
@@ -81,6 +104,7 @@ void StartController::follow() {
     m_again.cancel();
     if (!scene.proposal) return;
     say(*scene.proposal);
+    offerToLeaveOutHolder(m_services);
     m_tuning.start(scene, QString::fromStdString(scene.volume->title));
 }
 

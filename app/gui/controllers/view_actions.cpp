@@ -64,10 +64,11 @@ void addViewActions(Services& services) {
     ActionMenu menu(services.actions(), QObject::tr("&View"), open);
     menu.add(
         "fitAction", QObject::tr("&Fit"), "R; F",
-        QObject::tr("The whole volume from the same direction; double-click does the same"),
+        QObject::tr("All that is drawn, as large as it fits, from the same direction; double-click does the same"),
         [&store] { fitView(store); }, inToolBar);
     menu.add(
-        "resetViewAction", QObject::tr("&Reset"), "Home", QObject::tr("The view that the volume opened with"),
+        "resetViewAction", QObject::tr("&Reset"), "Home",
+        QObject::tr("From the side that shows most, as a volume opens; all that is drawn, as large as it fits"),
         [&store] { resetView(store); }, inToolBar);
     ActionMenu sides(services.actions(), QObject::tr("&View") + "/" + QObject::tr("&Look from"), open);
     for (const ViewText& v : kViews) {

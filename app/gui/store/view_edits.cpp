@@ -3,6 +3,7 @@
 #include <glm/common.hpp>
 
 #include "render/camera_motion.h"
+#include "session/home_view.h"
 #include "store/edits.h"
 
 namespace pellucid::gui {
@@ -17,16 +18,18 @@ void changeCamera(SessionStore& store, const Change& change, int gesture = 0) {
 
 } // namespace
 
-void fitView(SessionStore& store) { changeCamera(store, fitted); }
+void fitView(SessionStore& store) {
+    if (store.hasVolume()) store.setCamera(fittedView(store.scene(), store.scene().camera));
+}
 
 void resetView(SessionStore& store) {
-    changeCamera(store, [](const Camera& now, const Geometry& g) { return homeCamera(g, now.projection); });
+    if (store.hasVolume()) store.setCamera(homeView(store.scene(), store.scene().camera.projection));
 }
 
 void setStandardView(SessionStore& store, StandardView view) {
-    changeCamera(store, [view](const Camera& now, const Geometry& g) {
+    changeCamera(store, [&](const Camera& now, const Geometry& g) {
         const ViewAngles angles = anglesOf(view, g.worldAxes);
-        return standardCamera(g, angles.azimuth, angles.elevation, now.projection);
+        return fittedView(store.scene(), standardCamera(g, angles.azimuth, angles.elevation, now.projection));
     });
 }
 

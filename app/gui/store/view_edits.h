@@ -6,8 +6,8 @@
 
 namespace pellucid::gui {
 
-void fitView(SessionStore& store);   ///< the same direction, the whole box
-void resetView(SessionStore& store); ///< as a volume opens
+void fitView(SessionStore& store);   ///< the same direction; what is drawn fills the picture
+void resetView(SessionStore& store); ///< the home view, fitted to what is drawn now
 void setStandardView(SessionStore& store, StandardView view);
 void setProjection(SessionStore& store, Projection projection);
 void zoomView(SessionStore& store, double factor, int gesture = 0);

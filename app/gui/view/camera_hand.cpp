@@ -9,6 +9,7 @@
 #include <QWidget>
 
 #include "render/camera_motion.h"
+#include "session/home_view.h"
 #include "store/session_store.h"
 
 namespace pellucid::gui {
@@ -30,7 +31,9 @@ void CameraHand::zoom(double factor, int gesture) {
     set([=](const Camera& now, const Geometry& g) { return zoomed(now, g, factor); }, gesture);
 }
 
-void CameraHand::fit() { set(fitted); }
+void CameraHand::fit() {
+    if (const Scene* const scene = m_get()) m_set(fittedView(*scene, scene->camera), 0);
+}
 
 bool CameraHand::press(const QMouseEvent& event) {
     const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);

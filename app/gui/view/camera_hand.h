@@ -30,7 +30,7 @@ public:
     bool release(const QMouseEvent& event); ///< true: the left button went down and up in one place
     void wheel(QWheelEvent& event);
     bool key(int key); ///< Qt::Key; false: it does nothing
-    void fit();        ///< the same direction, the whole box
+    void fit();        ///< the same direction; what is drawn fills the picture
 
 private:
     enum class Motion { None, Rotate, Pan, Zoom };

@@ -1,0 +1,67 @@
+#include "render/drawn_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "volume/noise.h"
+#include "volume/voxel_loops.h"
+
+namespace pellucid {
+
+CellGrid::CellGrid(const Int3& from, const Int3& to) : lo(from), hi(to), cells(to - from) {
+    const double factor = std::cbrt(static_cast<double>(voxelCount(cells)) / static_cast<double>(kMost));
+    if (factor <= 1) return;
+    for (int a = 0; a < 3; ++a) cells[a] = std::clamp(static_cast<int>(cells[a] / factor), 1, cells[a]);
+}
+
+int CellGrid::begin(int axis, int cell) const {
+    return lo[axis] + static_cast<int>(static_cast<std::int64_t>(cell) * (hi[axis] - lo[axis]) / cells[axis]);
+}
+
+Int3 CellGrid::voxelIn(const Int3& cell) const {
+    const std::uint64_t random = hashOf(cell.x, cell.y, cell.z, 5);
+    Int3 voxel;
+    for (int a = 0; a < 3; ++a) {
+        const int first = begin(a, cell[a]), count = begin(a, cell[a] + 1) - first;
+        voxel[a] = first + static_cast<int>((random >> (20 * a)) % static_cast<std::uint64_t>(count));
+    }
+    return voxel;
+}
+
+namespace {
+
+/// Opacity by which a path of `part` of the box has the alpha `alpha`.
+double opacityOf(const Geometry& geometry, double alpha, double part) {
+    const double side = 2 * geometry.radius() / std::sqrt(3.0) / geometry.d0();
+    return 1 - std::pow(1 - alpha, 1 / std::max(1.0, part * side));
+}
+
+double leastOpacity(const Geometry& geometry) { return opacityOf(geometry, 0.05, 0.5); }
+
+} // namespace
+
+TransferFunction withEvenPeaks(const TransferFunction& tf, const Geometry& geometry, double alpha, double part) {
+    std::vector<double> peaks = featureOpacities(tf);
+    for (double& peak : peaks) peak = peak >= leastOpacity(geometry) ? opacityOf(geometry, alpha, part) : 0;
+    return withFeatureOpacities(tf, peaks);
+}
+
+Grid<std::uint8_t> drawnCells(const Volume& volume, const TransferFunction& tf, std::span<const VoxelPlane> planes,
+                              const CellGrid& grid, const JobControl& job) {
+    Grid<std::uint8_t> drawn(grid.cells);
+    const double least = leastOpacity(volume.geometry());
+    // Ten times as deep: peaks of which `least` is a tenth.
+    const TfSampler sampler(withEvenPeaks(tf, volume.geometry(), 1 - std::pow(1 - 0.05, 10), 0.5));
+    withSamples(volume, [&](const auto& samples) {
+        forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
+            const Int3 v = grid.voxelIn(cell);
+            const double s =
+                volume.intensityOfValue(static_cast<double>(samples[voxelIndex(volume.dims(), v.x, v.y, v.z)]));
+            drawn[at] = !std::isnan(s) && sampler.opacity(s) >= least && keeps(planes, Vec3(v));
+        });
+    });
+    return drawn;
+}
+
+} // namespace pellucid

@@ -1,0 +1,39 @@
+// A coarse grid over a volume, and which of its cells a transfer function draws.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/job.h"
+#include "render/clipping.h"
+#include "tf/transfer_function.h"
+#include "volume/volume.h"
+
+namespace pellucid {
+
+/// Voxels lo … hi − 1 along each axis, and the cells that they are divided into: at most kMost, as many as voxels where
+/// these are fewer.
+struct CellGrid {
+    static constexpr std::size_t kMost = std::size_t{1} << 18;
+
+    Int3 lo, hi, cells;
+
+    CellGrid(const Int3& from, const Int3& to);
+    bool isFine() const { return cells == hi - lo; } ///< a cell is a voxel
+    /// The first voxel of a cell; of the one after the last, hi.
+    int begin(int axis, int cell) const;
+    /// A voxel of the cell, by a hash: regular places would follow regular data.
+    Int3 voxelIn(const Int3& cell) const;
+};
+
+/// `tf` with an equal peak for each feature that can be seen at all, a path of half the box through which is at least
+/// 5 % opaque; 0 for the others. The peak: a path of `part` of the box has this `alpha`. So what is found with it does
+/// not depend on how the opacities are balanced.
+TransferFunction withEvenPeaks(const TransferFunction& tf, const Geometry& geometry, double alpha, double part);
+
+/// 1 where the voxel that stands for a cell is drawn: where its opacity is a tenth of the peak of its feature or more,
+/// if that can be seen, or it is in no feature and can be seen; and it lies within the planes. Throws Cancelled.
+Grid<std::uint8_t> drawnCells(const Volume& volume, const TransferFunction& tf, std::span<const VoxelPlane> planes,
+                              const CellGrid& grid, const JobControl& job = {});
+
+} // namespace pellucid

@@ -1,0 +1,20 @@
+#include "session/home_view.h"
+
+#include "optimize/views/opening_view.h"
+#include "render/camera_motion.h"
+#include "render/drawn_part.h"
+#include "tf/shown_tf.h"
+
+namespace pellucid {
+
+Camera fittedView(const Scene& scene, const Camera& camera, const JobControl& job) {
+    const DrawnPart part = drawnPart(*scene.volume, shownTf(scene.tf), *scene.session.clipping, job);
+    return fittedTo(part, camera, scene.volume->geometry());
+}
+
+Camera homeView(const Scene& scene, Projection projection, const JobControl& job) {
+    const Camera home = openingView(*scene.volume, shownTf(scene.tf), job);
+    return fittedView(scene, withProjection(home, scene.volume->geometry(), projection), job);
+}
+
+} // namespace pellucid

@@ -1,0 +1,88 @@
+// What an object lies on: boards are found, and what runs through the data because it is the object is not.
+#include <catch2/catch.hpp>
+
+#include "render/drawn_part.h"
+#include "render/holder.h"
+#include "support/volumes.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+
+namespace {
+
+TransferFunction solid() {
+    TransferFunction tf;
+    tf.points = {{0.4, 0, {1, 1, 1}, false, {}}, {0.4, 0.8, {1, 1, 1}, false, {}}, {1, 0.8, {1, 1, 1}, false, {}}};
+    tf.features = {{"all", 0.4, 1, {1, 1, 1}, {}}};
+    return tf;
+}
+
+using Solid = std::function<bool(const Vec3& voxel)>;
+std::shared_ptr<const Volume> made(const Solid& solidAt, Int3 dims = Int3(48)) {
+    return volumeFrom(geometryOf(dims), [&](int i, int j, int k) { return solidAt(Vec3(i, j, k)) ? 0.9 : 0.0; });
+}
+
+bool inBall(const Vec3& v, const Vec3& middle, double radius) { return glm::length(v - middle) < radius; }
+
+/// A board 3 thick in y, 40 wide in x, from border to border along z, that sags by `sag` in its middle; a ball lies on
+/// it.
+bool onBoard(const Vec3& v, double sag) {
+    const double top = 36 + sag * (1 - std::pow((v.x - 24) / 20, 2));
+    return (std::abs(v.x - 24) < 20 && v.y >= top && v.y < top + 3) || inBall(v, {24, 36 + sag - 14, 24}, 14);
+}
+
+} // namespace
+
+TEST_CASE("a board is found on its side of what lies on it, flat or sagging", "[holder]") {
+    const double sag = GENERATE(0.0, 3.0);
+    const auto volume = made([&](const Vec3& v) { return onBoard(v, sag); });
+    const auto holder = findHolder(*volume, solid());
+    REQUIRE(holder);
+    CHECK(holder->along == 2);
+    CHECK(holder->axis == 1);
+    CHECK(holder->isHigh);
+    CHECK(holder->side(volume->geometry()) == Vec3(0, 1, 0));
+    CHECK(holder->lost <= 0.05);
+    // Without it the ball alone is left, nearly all of it: 28 across, in the middle of x and z.
+    CHECK_NOTHROW(holder->without.validate());
+    Vec3 lo(1e300), hi(-1e300);
+    for (const Vec3& p : drawnPart(*volume, solid(), holder->without)) {
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    CHECK(lo.z > 9);
+    CHECK(hi.z < 39);
+    CHECK(hi.y <= 37 + sag);
+    CHECK(hi.y - lo.y > 25);
+}
+
+TEST_CASE("a board is found along any axis, on either side", "[holder]") {
+    const int turn = GENERATE(0, 1, 2);
+    const bool mirrored = GENERATE(false, true);
+    CAPTURE(turn, mirrored);
+    const auto volume = made([&](Vec3 v) {
+        if (mirrored) v = Vec3(47) - v;
+        return onBoard({v[turn], v[(turn + 1) % 3], v[(turn + 2) % 3]}, 0);
+    });
+    const auto holder = findHolder(*volume, solid());
+    REQUIRE(holder);
+    CHECK(holder->along == (turn + 2) % 3);
+    CHECK(holder->axis == (turn + 1) % 3);
+    CHECK(holder->isHigh != mirrored);
+}
+
+TEST_CASE("what is no board is none", "[holder]") {
+    const auto isFound = [](const Solid& s) { return findHolder(*made(s), solid()).has_value(); };
+    CHECK_FALSE(isFound([](const Vec3& v) { return inBall(v, Vec3(24), 15); }));
+    // A leg with a bone runs through because it goes on, and so does its skin.
+    CHECK_FALSE(isFound([](const Vec3& v) {
+        const double r = glm::length(Vec3(v.x - 24, v.y - 24, 0));
+        return r < 6 || (r > 17 && r < 20);
+    }));
+    // A thick slab under a ball is half of the object; a plate alone is the object.
+    CHECK_FALSE(isFound([](const Vec3& v) { return v.y >= 30 || inBall(v, {24, 18, 24}, 12); }));
+    CHECK_FALSE(isFound([](const Vec3& v) { return v.y >= 30 && v.y < 33; }));
+    CHECK_FALSE(isFound([](const Vec3&) { return false; }));
+    // One through the middle of the object: no box parts them.
+    CHECK_FALSE(isFound([](const Vec3& v) { return (v.y >= 23 && v.y < 25) || inBall(v, Vec3(24), 18); }));
+}
