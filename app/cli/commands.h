@@ -35,6 +35,7 @@ Command addSpace(CLI::App& program);
 Command addSaliencyMap(CLI::App& program);
 Command addCompare(CLI::App& program);
 Command addProbe(CLI::App& program);
+Command addRulers(CLI::App& program);
 Command addViews(CLI::App& program);
 Command addReproduce(CLI::App& program);
 Command addBench(CLI::App& program);

@@ -145,6 +145,7 @@ TEST_CASE("every setting goes through every door, and each refuses in the same w
     walk<FieldView>();
     walk<GroundView>();
     walk<SliceViews>();
+    walk<CoordinateSettings>();
     walk<PictureSaliencyView>();
     walk<ComparisonView>();
     walk<HsbMapping>();

@@ -48,6 +48,7 @@ Controllers::Controllers(Services& all) : services(all) {
     addThemeActions(services);
     clipHandles = &addClipHandlesAction(services);
     probe.addActions();
+    rulers.addActions();
 
     SessionStore& store = services.store();
     Actions& actions = services.actions();
@@ -71,6 +72,9 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(saving, &SaveController::busyChanged);
     watch(fields, &FieldController::busyChanged);
     watch(pictureSaliency, &PictureSaliencyController::busyChanged);
+    watch(rulers, &RulerController::busyChanged);
+    // Clicks are for one of the two.
+    QObject::connect(&rulers, &RulerController::placingChanged, &probe, &ProbeController::clear);
     watch(comparing, &ComparisonController::busyChanged);
     QObject::connect(&refining, &RefineController::pairWanted, &comparing,
                      &ComparisonController::compareWithRefinement);

@@ -13,6 +13,7 @@
 #include "controllers/probe_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/refine_controller.h"
+#include "controllers/ruler_controller.h"
 #include "controllers/save_controller.h"
 #include "controllers/start_controller.h"
 #include "controllers/study_controller.h"
@@ -32,7 +33,8 @@ struct Controllers {
     FieldController fields{services}; ///< what is drawn in the place of the data
     LiveController live{services, optimizing};
     PictureSaliencyController pictureSaliency{services};
-    SaveController saving{services, fields, pictureSaliency};
+    RulerController rulers{services};
+    SaveController saving{services, fields, pictureSaliency, rulers};
     OpenController opening{services, saving};
     StartController starting{services, opening};
     RecoveryController recovery{services, opening, saving};

@@ -25,6 +25,7 @@
 #include "view/difference_layer.h"
 #include "view/light_layer.h"
 #include "view/region_layer.h"
+#include "view/ruler_layer.h"
 #include "view/saliency_layer.h"
 #include "widgets/layouts.h"
 #include "widgets/named.h"
@@ -66,7 +67,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_services(std::make_unique<Services>(this)),
       m_controllers(std::make_unique<Controllers>(*m_services)),
       m_view(new VolumeView(m_services->store(), renderer, this, &m_controllers->fields)),
-      m_views(new ViewGrid(*m_services, m_controllers->fields, *m_view, m_controllers->comparing, this)),
+      m_views(new ViewGrid(*m_services, m_controllers->fields, m_controllers->rulers, *m_view, m_controllers->comparing,
+                           this)),
       m_row(new QHBoxLayout) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
@@ -81,6 +83,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     m_view->overlay().add(std::make_unique<SliceLayer>());
     addClipHandles(*m_services, *m_controllers->clipHandles, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_services, m_view->overlay()));
+    m_view->overlay().add(std::make_unique<RulerLayer>(m_controllers->rulers, m_services->store(), m_view->overlay()));
     addProbe(*m_services, m_controllers->probe, *m_view);
     m_view->overlay().add(std::make_unique<RegionLayer>(*m_services, m_controllers->refining, m_view->overlay()));
     addPanels();
@@ -105,6 +108,10 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     connect(m_services.get(), &Services::idleChanged, this, &MainWindow::settledChanged);
     connect(&m_services->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
     connect(&m_controllers->saving, &SaveController::sessionPathChanged, this, &MainWindow::updateTitle);
+    connect(m_view, &VolumeView::clicked, this, [this] { m_controllers->rulers.select(0); });
+    connect(&m_controllers->rulers, &RulerController::placingChanged, this, [this] {
+        if (m_controllers->rulers.placing()) m_view->setFocus(); // Esc is for it
+    });
     connect(&m_controllers->views, &ViewSearchController::glimpsed, m_view, &VolumeView::lookFrom);
     updateTitle();
     resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
