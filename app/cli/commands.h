@@ -22,6 +22,7 @@ struct Command {
 Command addInfo(CLI::App& program);
 Command addSamples(CLI::App& program);
 Command addPresets(CLI::App& program);
+Command addFilm(CLI::App& program);
 Command addGenerate(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);

@@ -29,6 +29,7 @@ Controllers::Controllers(Services& all) : services(all) {
     // The menus stand in the order in which their first actions come.
     opening.addActions();
     saving.addActions();
+    films.addActions();
     studies.addActions();
     addEditActions(services);
     starting.addActions();
@@ -70,6 +71,7 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(live, &LiveController::busyChanged);
     watch(starting, &StartController::busyChanged);
     watch(saving, &SaveController::busyChanged);
+    watch(films, &FilmController::busyChanged);
     watch(fields, &FieldController::busyChanged);
     watch(pictureSaliency, &PictureSaliencyController::busyChanged);
     watch(rulers, &RulerController::busyChanged);

@@ -5,6 +5,7 @@
 #include "controllers/comparison_controller.h"
 #include "controllers/feature_actions.h"
 #include "controllers/field_controller.h"
+#include "controllers/film_controller.h"
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
@@ -35,6 +36,7 @@ struct Controllers {
     PictureSaliencyController pictureSaliency{services};
     RulerController rulers{services};
     SaveController saving{services, fields, pictureSaliency, rulers};
+    FilmController films{services};
     OpenController opening{services, saving};
     StartController starting{services, opening};
     RecoveryController recovery{services, opening, saving};
