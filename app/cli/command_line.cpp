@@ -14,13 +14,14 @@ bool isPlain(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string("_@%+=:,./-").find(c) != std::string::npos;
 }
 
-} // namespace
-
+/// As a POSIX shell reads it.
 std::string inSingleQuotes(const std::string& word) {
     std::string quoted = "'";
     for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return quoted + "'";
 }
+
+} // namespace
 
 std::string shellQuoted(const std::string& word) {
     const bool isPlainWord = !word.empty() && std::all_of(word.begin(), word.end(), isPlain);

@@ -6,8 +6,6 @@
 
 namespace pellucid::cli {
 
-/// In single quotes, as a POSIX shell and ffmpeg read them.
-std::string inSingleQuotes(const std::string& word);
 /// One word as a POSIX shell reads it back: as it is, or in single quotes.
 std::string shellQuoted(const std::string& word);
 /// "pellucid-cli WORD…", as one types it.

@@ -22,6 +22,7 @@ struct Command {
 Command addInfo(CLI::App& program);
 Command addSamples(CLI::App& program);
 Command addPresets(CLI::App& program);
+Command addFilm(CLI::App& program);
 Command addGenerate(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);
@@ -35,6 +36,7 @@ Command addSpace(CLI::App& program);
 Command addSaliencyMap(CLI::App& program);
 Command addCompare(CLI::App& program);
 Command addProbe(CLI::App& program);
+Command addRulers(CLI::App& program);
 Command addViews(CLI::App& program);
 Command addReproduce(CLI::App& program);
 Command addBench(CLI::App& program);

@@ -206,10 +206,11 @@ int run(const std::vector<std::string>& arguments) {
                    "`pellucid-cli COMMAND --help` lists a command's options.");
 
     std::vector<Command> commands{
-        addInfo(program),        addSamples(program), addPresets(program),   addGenerate(program), addRender(program),
-        addMeasure(program),     addFields(program),  addRefine(program),    addOptimize(program), addSequence(program),
-        addSpace(program),       addPlot(program),    addPropose(program),   addProbe(program),    addViews(program),
-        addSaliencyMap(program), addCompare(program), addReproduce(program), addBench(program)};
+        addInfo(program),    addSamples(program),     addPresets(program), addGenerate(program),  addRender(program),
+        addMeasure(program), addFields(program),      addRefine(program),  addOptimize(program),  addSequence(program),
+        addSpace(program),   addPlot(program),        addPropose(program), addProbe(program),     addRulers(program),
+        addViews(program),   addSaliencyMap(program), addCompare(program), addReproduce(program), addBench(program),
+        addFilm(program)};
     std::ranges::move(addStudy(program), std::back_inserter(commands));
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);

@@ -49,7 +49,7 @@ _pellucid_cli() {
             ;;
         --slice) choices="x: y: z:" ;;
         --target) choices="equal diagonal inside-out only:" ;;
-        --annotate) choices="all cube letters axes scale legend title" ;;
+        --annotate) choices="all cube letters axes scale legend title measures" ;;
         --view)
             choices="anterior posterior left right superior inferior front back top bottom"
             [[ $command == optimize ]] && choices+=" best"

@@ -42,6 +42,9 @@ bool looksLikePixel(const std::string& text) {
            text.find_first_not_of("0123456789,") == std::string::npos;
 }
 
+PatientAxes axesOf(const Scene& scene) { return scene.session.coordinates->axes; }
+std::string inParentheses(const std::string& text) { return text.empty() ? text : " (" + text + ")"; }
+
 std::string textOf(const RayProbe& p, const Scene& scene) {
     const TransferFunction& tf = scene.tf;
     const Volume& volume = *scene.volume;
@@ -61,7 +64,8 @@ std::string textOf(const RayProbe& p, const Scene& scene) {
         lines.emplace_back("most", (p.feature >= 0 ? tf.features[static_cast<std::size_t>(p.feature)].name
                                                    : std::string("(no feature)")) +
                                        ", value " + plainText(volume.valueOfIntensity(p.intensity)));
-        lines.emplace_back("world", three(p.position));
+        lines.emplace_back("world", three(inAxes(axesOf(scene), volume.geometry(), p.position)) +
+                                        inParentheses(coordinatesText(axesOf(scene), volume.geometry())));
         lines.emplace_back("voxel", three(volume.geometry().voxelFromWorld(p.position)));
     }
     return listing(lines) + table.text();
@@ -86,12 +90,16 @@ Json jsonOf(const RayProbe& p, const Scene& scene, const Int3& pixel, const Imag
                                     {"share", p.shares[f]}});
     }
     if (!p.hit) return json;
-    json["entry"] = jsonFromVector(p.entry);
-    json["exit"] = jsonFromVector(p.exit);
+    const auto place = [&](const Vec3& world) {
+        return jsonFromVector(inAxes(axesOf(scene), volume.geometry(), world));
+    };
+    if (volume.geometry().worldAxes == WorldAxes::Patient) json["coordinates"] = name(axesOf(scene));
+    json["entry"] = place(p.entry);
+    json["exit"] = place(p.exit);
     if (p.alpha > 0) {
         json["color"] = hexFromRgb(p.color);
         if (p.feature >= 0) json["feature"] = tf.features[static_cast<std::size_t>(p.feature)].name;
-        json["position"] = jsonFromVector(p.position);
+        json["position"] = place(p.position);
         json["voxel"] = jsonFromVector(volume.geometry().voxelFromWorld(p.position));
         json["intensity"] = p.intensity;
         json["value"] = volume.valueOfIntensity(p.intensity);
@@ -143,6 +151,7 @@ Command addProbe(CLI::App& program) {
            "X,Y: its column and row, from 0,0 at the top left of the picture")
         ->type_name("");
     addValue(*app, "--size", "WxH", o->scene.picture.size, parseImageSize, "pixels of the picture (default 512x512)");
+    o->scene.coordinates.add(*app);
     addValue(*app, "--feature", "NAME", o->scene.picture.feature, anyText, "in the picture of this feature alone");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

@@ -5,13 +5,16 @@
 #include "commands.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
+#include "options/annotate_option.h"
 #include "options/slice_options.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
 #include "render/annotation_raster.h"
 #include "render/background.h"
+#include "render/mark_maker.h"
 #include "render/memory_needs.h"
+#include "render/ruler_marks.h"
 #include "resolve.h"
 #include "results_json.h"
 
@@ -26,20 +29,6 @@ struct Options {
     AnnotationChoice annotate = AnnotationChoice::none();
     bool preview = false;
 };
-
-/// "cube,scale" or "all".
-AnnotationChoice parseParts(const std::string& text, const std::string& option) {
-    AnnotationChoice show = AnnotationChoice::none();
-    for (const std::string& word : split(text, ',')) {
-        bool known = false;
-        for (const AnnotationPartInfo& part : kAnnotationParts)
-            if (word == part.name || word == "all") known = show.*part.shown = true;
-        if (!known)
-            throw UsageError("'" + text + "' does not name annotations", option,
-                             "give all, or some of cube, letters, axes, scale, legend, title with commas between");
-    }
-    return show;
-}
 
 bool isJpeg(const std::string& path) {
     const std::string suffix = lowerCase(std::filesystem::path(path).extension().string());
@@ -60,20 +49,34 @@ void check(const Options& o) {
             {slice && mode, "a slice has no rays, so it has no mode", "--mode", "leave it out"}});
 }
 
+/// Everything that the annotations depend on. What spheres and boxes say is measured only where it is shown.
+AnnotationInput annotationsOf(const Options& o, const Scene& scene, const PictureInput& picture,
+                              const std::optional<Field>& field, Progress& progress) {
+    AnnotationInput input =
+        field ? fieldAnnotationInput(picture, scene, *field, o.annotate) : annotationInput(picture, o.annotate);
+    const bool measures = o.annotate.measures && !scene.session.rulers->empty();
+    addMeasures(input, scene,
+                measures ? readRulers(*scene.session.rulers, *scene.data, progress.phase("measuring"))
+                         : RulerReadings{});
+    return input;
+}
+
 /// What can be told of a slice as soon as it is known whether the session, too, wants a field.
 void checkSlice(const Options& o, bool field) {
     if (!o.slice.at) return;
     AnnotationChoice others = o.annotate;
+    others.measures = false; // of slices of anything
+    const bool ofView = others.any();
     others.legend = others.title = false;
     const char* const ofData = o.slice.lookOfData();
-    refuse(
-        {{o.annotate.any() && !field, "a slice of the data is drawn without annotations", "--annotate", "leave it out"},
-         {others.any(), "a slice of a field has no other annotations than these", "--annotate",
-          "give legend,title, or leave it out"},
-         {o.scene.picture.feature && !field, "a slice of the data always shows all features", "--feature",
-          "leave it out"},
-         {field && ofData != nullptr, "a field does not use the colours of the transfer function", ofData,
-          "use --field-top or --field-colormap, or draw the data with --field none"}});
+    refuse({{ofView && !field, "a slice of the data has no other annotations than measures", "--annotate",
+             "give measures, or leave it out"},
+            {others.any(), "a slice of a field has no other annotations than these", "--annotate",
+             "give legend,title,measures, or leave it out"},
+            {o.scene.picture.feature && !field, "a slice of the data always shows all features", "--feature",
+             "leave it out"},
+            {field && ofData != nullptr, "a field does not use the colours of the transfer function", ofData,
+             "use --field-top or --field-colormap, or draw the data with --field none"}});
 }
 
 /// The field that the session and the options want drawn; empty: the data.
@@ -105,7 +108,8 @@ struct Drawn {
     Json slice = nullptr;    ///< where it lies; null: it is none
 };
 
-Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field) {
+Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
+                Progress& progress) {
     const SliceInput input = o.slice.inputOf(scene, field ? &*field : nullptr);
     const Geometry& g = input.volume->geometry();
     const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
@@ -119,8 +123,14 @@ Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& pictur
                    {"voxel", plane.position},
                    {"window", jsonFromRange(input.settings.window)},
                    {"tf_strength", input.settings.tfStrength}};
-    if (field && o.annotate.any())
-        drawMarks(drawn.image, annotationMarks(fieldAnnotationInput(picture, scene, *field, o.annotate)));
+    if (!o.annotate.any()) return drawn;
+    AnnotationInput around = annotationsOf(o, scene, picture, field, progress);
+    if (around.show.measures) {
+        const double cap = MarkMaker(plane.width, plane.height, around.density, {}).capHeight;
+        drawMarks(drawn.image, rulerMarks(around.rulers, scene.data->geometry(), plane, {around.density, cap}));
+    }
+    around.show.measures = false; // they lie in the slice, not in the view
+    if (field) drawMarks(drawn.image, annotationMarks(around));
     return drawn;
 }
 
@@ -147,9 +157,7 @@ Drawn drawPreview(const PictureInput& picture, Progress& progress) {
 Drawn drawView(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
                Progress& progress) {
     Drawn drawn = o.preview ? drawPreview(picture, progress) : drawPicture(scene, picture, progress);
-    if (o.annotate.any())
-        drawMarks(drawn.image, annotationMarks(field ? fieldAnnotationInput(picture, scene, *field, o.annotate)
-                                                     : annotationInput(picture, o.annotate)));
+    if (o.annotate.any()) drawMarks(drawn.image, annotationMarks(annotationsOf(o, scene, picture, field, progress)));
     return drawn;
 }
 
@@ -172,7 +180,8 @@ Answer run(const Options& o, Progress& progress) {
         picture = fieldPictureInput(scene, *shown, s.width, s.height, o.scene.picture.transparent);
         o.scene.picture.applyTo(picture);
     }
-    Drawn drawn = o.slice.at ? drawSlice(o, scene, picture, shown) : drawView(o, scene, picture, shown, progress);
+    Drawn drawn =
+        o.slice.at ? drawSlice(o, scene, picture, shown, progress) : drawView(o, scene, picture, shown, progress);
     progress.phase("writing");
     writeImage(drawn.image, o.out);
 
@@ -212,9 +221,10 @@ Command addRender(CLI::App& program) {
     o->slice.add(*app);
     o->scene.field.add(*app, "Field");
     o->scene.saliency.add(*app);
-    addValue(*app, "--annotate", "PARTS", o->annotate, parseParts,
-             "draw annotations over the picture: all, or some of cube, letters, axes, scale, legend, title with "
-             "commas between");
+    addAnnotate(*app, o->annotate,
+                "draw annotations over the picture: all, or some of cube, letters, axes, scale, legend, title, "
+                "measures with commas between; measures are those of the session, and slices have them, too");
+    o->scene.coordinates.add(*app);
     app->add_flag("--preview", o->preview,
                   "draw the quick picture that the window shows while the view turns, by the cpu renderer");
     return {app, [o](Progress& progress) { return run(*o, progress); }};

@@ -51,6 +51,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
     options.ground.applyTo(inputs);
+    inputs.session.coordinates.edit([&](CoordinateSettings& c) { options.coordinates.applyTo(c); });
     inputs.session.field.edit([&](FieldView& view) { options.field.applyTo(view); });
     options.engine.requireProfile(inputs, options.saliency);
     inputs.then = work.use;

@@ -29,6 +29,7 @@ struct SceneOptions {
     SaliencyInput saliency;
     PictureOptions picture;
     GroundOptions ground;
+    SettingOptions<CoordinateSettings> coordinates; ///< --coordinates
     SettingOptions<FieldView> field; ///< --field and the options of its look: a field in the place of the data
 
     bool drawsField() const { return field.values().kind.has_value(); }

@@ -11,9 +11,9 @@
 #include "base/parallel.h"
 #include "commands.h"
 #include "engines/engines.h"
+#include "film/movie_file.h"
 #include "image_io/image_file.h"
 #include "interrupt.h"
-#include "movie.h"
 #include "optimize/answer/visibility_words.h"
 #include "options/priority_options.h"
 #include "options/target_input.h"
@@ -78,6 +78,11 @@ void announceFrames(const Options& o, int from, int size) {
     }
 }
 
+void checkMovieSuffix(const std::string& path) {
+    if (!isMovie(path))
+        throw UsageError("'" + path + "' does not end in .mp4", "--mp4", "give a name such as film.mp4");
+}
+
 /// What can be told before the volume is read.
 void check(const Options& o) {
     for (const char* name : kCurves) addOutputFile(o.out, name, "--out");
@@ -86,7 +91,9 @@ void check(const Options& o) {
             {o.framesPerSecond && !o.movie, "--fps needs --mp4", "--fps", "add --mp4 FILE, or leave out --fps"},
             {o.movie && o.noPictures, "--mp4 needs the pictures", "--no-pictures", "leave out one of the two"}});
     o.priority.check(o.scene.picture.size);
-    if (o.movie) requireMovieWriter();
+    if (o.movie && !hasMovieWriter())
+        throw Error("ffmpeg is not installed", "--mp4",
+                    "install it, or leave the option out: the pictures of all frames are written without it, too");
 }
 
 /// Refuses options of refinement in another mode.

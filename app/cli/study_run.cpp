@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-#include "child_program.h"
+#include "base/child_program.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "parse.h"

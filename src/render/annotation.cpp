@@ -10,6 +10,7 @@
 #include "render/mark_maker.h"
 #include "render/named_box.h"
 #include "render/projected.h"
+#include "render/ruler_marks.h"
 #include "volume/orientation.h"
 
 namespace pellucid {
@@ -39,17 +40,19 @@ public:
     std::vector<Mark> marks() {
         const AnnotationChoice& show = m_in.show;
         if (!show.on) return {};
+        std::vector<Mark> rulers = show.measures ? measures() : std::vector<Mark>();
         if (show.cube) addCube();
         if (show.scale) addScale();
         if (show.legend) addLegend();
         if (show.letters && m_in.geometry.worldAxes == WorldAxes::Patient) addLetters();
         for (Mark& name : m_names) place({std::move(name)}); // where they fit
         if (show.title) addTitle();
-        if (!show.axes) return std::move(m_marks);
         std::vector<Mark> rest;
         std::swap(rest, m_marks);
-        addAxes(); // labels find room between the others; lines lie below them
-        m_marks.insert(m_marks.end(), std::make_move_iterator(rest.begin()), std::make_move_iterator(rest.end()));
+        if (show.axes) addAxes(); // labels find room between the others; lines lie below them
+        for (std::vector<Mark>* group : {&rulers, &rest})
+            m_marks.insert(m_marks.end(), std::make_move_iterator(group->begin()),
+                           std::make_move_iterator(group->end()));
         return std::move(m_marks);
     }
 
@@ -72,6 +75,12 @@ private:
     }
 
     // ---- the parts
+
+    /// They lie where they lie, and hold no room.
+    std::vector<Mark> measures() const {
+        const PictureView view{m_in.camera, m_in.picture.width, m_in.picture.height};
+        return rulerMarks(m_in.rulers, view, {m_in.density, m_cap});
+    }
 
     void addCube() {
         const double radius = std::max(18 * m_in.density, 0.055 * std::min(m_width, m_height)); // to a corner
@@ -125,8 +134,7 @@ private:
         const double units = m_project.unitsPerPixel(depth);
         const double length = roundNumberBelow(0.22 * m_width * units), pixels = length / units;
         if (!std::isfinite(pixels)) return;
-        const std::string text =
-            numberText(length, length) + (m_in.geometry.worldAxes == WorldAxes::Patient ? " mm" : " units");
+        const std::string text = numberText(length, length) + " " + lengthUnit(m_in.geometry);
         const double stroke = std::max(1.2 * m_in.density, 0.17 * m_cap), end = 0.45 * m_cap;
         const double block = std::max(pixels, m_cap * textWidth(text));
         const double right = m_width - m_margin - (block - pixels) / 2, y = m_height - m_margin - end / 2;
@@ -283,18 +291,8 @@ private:
             if (da < near) a = a + (b - a) * ((near - da) / (db - da));
             if (db < near) b = b + (a - b) * ((near - db) / (da - db));
         }
-        const Vec2 from = m_project(a), way = m_project(b) - from;
-        double t0 = 0, t1 = 1;
-        const double edge = m_cap;                  // drawn a little beyond, so that ends are not seen
-        const auto keep = [&](double p, double q) { // p·t ≤ q
-            if (p == 0) return q >= 0;
-            (p < 0 ? t0 : t1) = p < 0 ? std::max(t0, q / p) : std::min(t1, q / p);
-            return t0 < t1;
-        };
-        if (!keep(-way.x, from.x + edge) || !keep(way.x, m_width + edge - from.x) || !keep(-way.y, from.y + edge) ||
-            !keep(way.y, m_height + edge - from.y))
-            return {};
-        return std::array<Vec2, 2>{from + way * t0, from + way * t1};
+        // A little beyond the picture, so that ends are not seen.
+        return partWithin(m_project(a), m_project(b), PixelBox{0, 0, m_width, m_height}.widened(m_cap));
     }
 
     struct Edge {
@@ -354,8 +352,22 @@ private:
     std::vector<AxisTick> ticksOf(int axis, double lo, double hi, int wanted) const {
         if (m_box) return m_box->ticks[static_cast<std::size_t>(axis)];
         std::vector<AxisTick> all;
-        for (const double value : axisTicks(lo, hi, wanted)) all.push_back({value, numberText(value, hi - lo)});
+        for (const double value : axisTicks(lo, hi, wanted))
+            all.push_back({value, numberText(isAgainstWorld(axis) ? 0 - value : value, hi - lo)});
         return all;
+    }
+    /// Whether the coordinates that people have chosen grow where those of the world fall.
+    bool isAgainstWorld(int axis) const {
+        Vec3 one(0);
+        one[axis] = 1;
+        return inAxes(m_in.axes, m_in.geometry, one)[axis] < 0;
+    }
+    /// "R→L  mm": where coordinates grow.
+    std::string captionOf(int axis) const {
+        if (m_box) return m_box->captions[static_cast<std::size_t>(axis)];
+        if (m_in.geometry.worldAxes != WorldAxes::Patient) return std::string(1, "xyz"[axis]);
+        const bool against = isAgainstWorld(axis);
+        return std::string(1, patientLetter(axis, against)) + "→" + patientLetter(axis, !against) + "  mm";
     }
 
     void addTicks(int axis, const Vec3& lo, const Vec3& hi, const Vec2& middle) {
@@ -393,11 +405,7 @@ private:
                 widest =
                     std::max(widest, std::abs(outward.x) * m_cap * textWidth(t.text) + std::abs(outward.y) * m_cap);
         }
-        const std::string caption =
-            m_box ? m_box->captions[static_cast<std::size_t>(axis)]
-            : m_in.geometry.worldAxes == WorldAxes::Patient
-                ? std::string(1, patientLetter(axis, false)) + "→" + patientLetter(axis, true) + "  mm"
-                : std::string(1, "xyz"[axis]);
+        const std::string caption = captionOf(axis);
         for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8})
             if (placeLabel(caption, a + (b - a) * share, outward, tick + 1.2 * m_cap + widest, false)) return;
         for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) // within the outline, then

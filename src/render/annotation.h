@@ -10,17 +10,19 @@
 #include "render/render_settings.h"
 #include "render/stroke_font.h"
 #include "tf/transfer_function.h"
+#include "volume/orientation.h"
+#include "volume/ruler.h"
 
 namespace pellucid {
 
 /// What stands around and over a picture.
 struct AnnotationChoice {
     bool on = true; ///< false: nothing, whatever the others say
-    bool cube = true, letters = true, axes = false, scale = true, legend = false, title = false;
+    bool cube = true, letters = true, axes = false, scale = true, legend = false, title = false, measures = true;
     bool operator==(const AnnotationChoice&) const = default;
 
-    static AnnotationChoice none() { return {true, false, false, false, false, false, false}; }
-    bool any() const { return on && (cube || letters || axes || scale || legend || title); }
+    static AnnotationChoice none() { return {true, false, false, false, false, false, false, false}; }
+    bool any() const { return on && (cube || letters || axes || scale || legend || title || measures); }
 };
 
 enum class AnnotationPart {
@@ -29,20 +31,30 @@ enum class AnnotationPart {
     Axes,    ///< the box around the volume along the world's axes, with coordinates
     Scale,   ///< a bar of round length, at the depth of the camera's centre
     Legend,  ///< colours and opacities over the intensity window, in data units
-    Title    ///< of the volume
+    Title,   ///< of the volume
+    Measures ///< distances, angles, spheres and boxes, with what they say
 };
 struct AnnotationPartInfo {
     AnnotationPart part;
     const char* name; ///< "cube" …, as options and sessions call it
     bool AnnotationChoice::*shown;
 };
-inline constexpr std::array<AnnotationPartInfo, 6> kAnnotationParts{
+inline constexpr std::array<AnnotationPartInfo, 7> kAnnotationParts{
     {{AnnotationPart::Cube, "cube", &AnnotationChoice::cube},
      {AnnotationPart::Letters, "letters", &AnnotationChoice::letters},
      {AnnotationPart::Axes, "axes", &AnnotationChoice::axes},
      {AnnotationPart::Scale, "scale", &AnnotationChoice::scale},
      {AnnotationPart::Legend, "legend", &AnnotationChoice::legend},
-     {AnnotationPart::Title, "title", &AnnotationChoice::title}}};
+     {AnnotationPart::Title, "title", &AnnotationChoice::title},
+     {AnnotationPart::Measures, "measures", &AnnotationChoice::measures}}};
+
+/// A measure as it is drawn.
+struct ShownRuler {
+    Ruler ruler;
+    std::string label = {};  ///< what it says, such as "12.3 mm"; may be empty
+    bool isSelected = false; ///< drawn in another colour
+    bool operator==(const ShownRuler&) const = default;
+};
 
 struct AnnotationInput {
     AnnotationChoice show;
@@ -53,6 +65,8 @@ struct AnnotationInput {
     std::string title;
     RenderSettings picture; ///< size in pixels, background, mode, feature
     double density = 1;     ///< pixels in which lengths of the screen are one: no text gets smaller than 7 of them
+    std::vector<ShownRuler> rulers = {}; ///< without those that are hidden
+    PatientAxes axes = PatientAxes::Lps; ///< of coordinates
 };
 
 /// One thing to draw: in pixels from the top left corner of the picture, y down.
@@ -86,7 +100,7 @@ PixelBox boxAround(const std::vector<Vec2>& points);
 PixelBox extentOf(const Mark& mark);
 
 /// In the order in which they are drawn. Parts that find no room in a small picture are left out. The parts do not
-/// overlap, but for lines of the axes.
+/// overlap, but for lines of the axes and measures.
 std::vector<Mark> annotationMarks(const AnnotationInput& input);
 
 } // namespace pellucid

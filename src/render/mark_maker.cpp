@@ -50,4 +50,18 @@ Mark MarkMaker::textMark(AnnotationPart part, const std::string& words, const Ve
     return mark;
 }
 
+std::optional<std::array<Vec2, 2>> partWithin(const Vec2& from, const Vec2& to, const PixelBox& box) {
+    const Vec2 way = to - from;
+    double t0 = 0, t1 = 1;
+    const auto keep = [&](double p, double q) { // p·t ≤ q
+        if (p == 0) return q >= 0;
+        (p < 0 ? t0 : t1) = p < 0 ? std::max(t0, q / p) : std::min(t1, q / p);
+        return t0 < t1;
+    };
+    if (!keep(-way.x, from.x - box.left) || !keep(way.x, box.right - from.x) || !keep(-way.y, from.y - box.top) ||
+        !keep(way.y, box.bottom - from.y))
+        return {};
+    return std::array<Vec2, 2>{from + way * t0, from + way * t1};
+}
+
 } // namespace pellucid

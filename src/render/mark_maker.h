@@ -1,6 +1,9 @@
 // Marks in the ink of a picture: light on dark and dark on light, of a size that can be read.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "render/annotation.h"
 
 namespace pellucid {
@@ -24,6 +27,9 @@ struct MarkMaker {
     Mark textMark(AnnotationPart part, const std::string& words, const Vec2& at, Align horizontal, Align vertical,
                   double capital) const;
 };
+
+/// The part of a line between two points that lies in a box, or none.
+std::optional<std::array<Vec2, 2>> partWithin(const Vec2& from, const Vec2& to, const PixelBox& box);
 
 /// `a` with so much of `b`, [0,1].
 Rgb mixed(const Rgb& a, const Rgb& b, double share);

@@ -502,4 +502,27 @@ AnnotationInput annotationInput(const PictureInput& picture, const AnnotationCho
             volume.range(), volume.title,   picture.settings,  density};
 }
 
+RulerReadings readRulers(const std::vector<Ruler>& rulers, const Volume& volume, const JobControl& job) {
+    RulerReadings readings;
+    for (const Ruler& ruler : rulers) readings[ruler.number] = read(ruler, volume, job);
+    return readings;
+}
+
+std::vector<ShownRuler> shownRulers(const Scene& scene, const RulerReadings& readings) {
+    const ValueRange& range = scene.data->range();
+    std::vector<ShownRuler> shown;
+    for (const Ruler& ruler : *scene.session.rulers) {
+        if (!ruler.shown) continue;
+        const auto known = readings.find(ruler.number);
+        const RulerReading reading = known != readings.end() ? known->second : readGeometry(ruler);
+        shown.push_back({ruler, labelOf(reading, scene.data->geometry(), range.hi - range.lo)});
+    }
+    return shown;
+}
+
+void addMeasures(AnnotationInput& input, const Scene& scene, const RulerReadings& readings) {
+    input.rulers = shownRulers(scene, readings);
+    input.axes = scene.session.coordinates->axes;
+}
+
 } // namespace pellucid

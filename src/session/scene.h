@@ -163,9 +163,18 @@ double topOf(const FieldView& view, const Field& field);
 /// is made of that someone draws in the picture (regionColors()).
 PictureInput plainPictureInput(const Scene& scene, int width, int height);
 
+/// What the measures of a session say, by their numbers.
+using RulerReadings = std::map<int, RulerReading>;
+/// Throws Cancelled.
+RulerReadings readRulers(const std::vector<Ruler>& rulers, const Volume& volume, const JobControl& job = {});
+/// Those that are shown, with what they say where that is known; the scene has a volume.
+std::vector<ShownRuler> shownRulers(const Scene& scene, const RulerReadings& readings);
+
 /// Everything that what stands around a picture depends on; the picture has a volume. `density`: pixels of the picture
 /// in which lengths of the screen are one.
 AnnotationInput annotationInput(const PictureInput& picture, const AnnotationChoice& show, double density = 1);
+/// Adds what belongs to the session alone: its measures, and the coordinates that people have chosen.
+void addMeasures(AnnotationInput& input, const Scene& scene, const RulerReadings& readings);
 /// Of a picture of a field: its name and a legend of its colours too, unless `show` switches everything off.
 AnnotationInput fieldAnnotationInput(const PictureInput& picture, const Scene& scene, const Field& field,
                                      AnnotationChoice show, double density = 1);

@@ -23,6 +23,8 @@
 #include "tf/transfer_function.h"
 #include "volume/derived.h"
 #include "volume/loader.h"
+#include "volume/orientation.h"
+#include "volume/ruler.h"
 
 namespace pellucid {
 
@@ -218,6 +220,14 @@ std::span<const Setting> settingsOf<SliceViews>();
 template <>
 inline constexpr auto kNamesOf<SliceViews::Layout> = enumNames("layout", "volume", "four", "volume-large");
 
+/// In which coordinates people see and give places. Files and figures stay as they are.
+struct CoordinateSettings {
+    PatientAxes axes = PatientAxes::Lps;
+    bool operator==(const CoordinateSettings&) const = default;
+};
+template <>
+std::span<const Setting> settingsOf<CoordinateSettings>();
+
 /// What of 2D feature saliency the window shows (docs/method.md, "2D feature saliency").
 enum class SaliencyMapShown {
     None,
@@ -339,7 +349,9 @@ struct Session {
     Part<OptimizeOptions> optimize;
     Part<RefineSettings> refine;
     Part<SliceViews> slices;
-    Part<FieldView> field; ///< what is drawn in the place of the data
+    Part<CoordinateSettings> coordinates;
+    Part<std::vector<Ruler>> rulers; ///< what people have measured, in the order in which they did
+    Part<FieldView> field;           ///< what is drawn in the place of the data
     Part<PictureSaliencyView> pictureSaliency;
     Part<ComparisonView> comparison;
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns

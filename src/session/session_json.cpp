@@ -448,6 +448,43 @@ SliceViews toSlices(const JsonValue& j) {
     return s;
 }
 
+json fromRulers(const std::vector<Ruler>& rulers) {
+    json list = json::array();
+    for (const Ruler& r : rulers) {
+        json one{{"kind", name(r.kind)},
+                 {"name", r.name},
+                 {"points", json::array()},
+                 {"shown", r.shown},
+                 {"number", r.number}};
+        for (const Vec3& p : r.points) one["points"].push_back(fromVec(p));
+        if (r.kind == RulerKind::Sphere) one["radius"] = r.radius;
+        list.push_back(std::move(one));
+    }
+    return list;
+}
+
+std::vector<Ruler> toRulers(const JsonValue& j) {
+    constexpr double kFar = 1e30; // as coordinates of the world elsewhere
+    std::vector<Ruler> rulers;
+    std::set<int> numbers;
+    for (const JsonValue& item : j.items()) {
+        Ruler r;
+        const auto kind = findNamed<RulerKind>(item["kind"].text());
+        if (!kind) item["kind"].fail("no such measure", "write distance, angle, sphere or box");
+        r.kind = *kind;
+        r.name = item["name"].text();
+        for (const JsonValue& p : item["points"].items()) r.points.push_back(toVec(p, -kFar, kFar));
+        if (r.kind == RulerKind::Sphere) r.radius = item["radius"].number(0, kFar);
+        if (item.has("shown")) r.shown = item["shown"].boolean();
+        r.number = item["number"].whole(1, kMostCount);
+        if (const std::string problem = rulerProblem(r); !problem.empty()) item.fail(problem);
+        if (!numbers.insert(r.number).second) item["number"].fail("another measure has this number");
+        rulers.push_back(std::move(r));
+    }
+    if (rulers.size() > kMostRulers) j.fail("these are too many measures");
+    return rulers;
+}
+
 json fromField(const FieldView& f) {
     json j = from(f);
     j["feature"] = f.feature;
@@ -654,6 +691,8 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"optimize", from(*s.optimize)},
            {"refine", fromRefine(*s.refine)},
            {"slices", fromSlices(*s.slices)},
+           {"coordinates", from(*s.coordinates)},
+           {"rulers", fromRulers(*s.rulers)},
            {"field", fromField(*s.field)},
            {"picture_saliency", from(*s.pictureSaliency)},
            {"comparison", fromComparison(*s.comparison)},
@@ -692,6 +731,8 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("optimize")) s.optimize = to<OptimizeOptions>(j["optimize"]);
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
+    if (j.has("coordinates")) s.coordinates = to<CoordinateSettings>(j["coordinates"]);
+    if (j.has("rulers")) s.rulers = toRulers(j["rulers"]);
     if (j.has("field")) s.field = toField(j["field"]);
     if (j.has("picture_saliency")) s.pictureSaliency = to<PictureSaliencyView>(j["picture_saliency"]);
     if (j.has("comparison")) s.comparison = toComparison(j["comparison"]);
@@ -712,9 +753,10 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         s.runs = std::move(runs);
     }
     s.extraJson = j.unknownKeys(
-        {"format",  "version",   "variables", "frame",    "features", "hold_targets",     "camera",     "clip",
-         "display", "reference", "measure",   "optimize", "refine",   "slices",           "field",      "target_keys",
-         "adapt",   "hsb",       "ground",    "runs",     "density",  "picture_saliency", "comparison", "title"});
+        {"format",  "version",    "variables", "frame",    "features", "hold_targets",     "camera",     "clip",
+         "display", "reference",  "measure",   "optimize", "refine",   "slices",           "field",      "target_keys",
+         "adapt",   "hsb",        "ground",    "runs",     "density",  "picture_saliency", "comparison", "title",
+         "rulers",  "coordinates"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

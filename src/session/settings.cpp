@@ -254,6 +254,23 @@ std::span<const Setting> settingsOf<SliceViews>() {
 }
 
 template <>
+std::span<const Setting> settingsOf<CoordinateSettings>() {
+    static constexpr const char* kAxes[] = {"LPS (DICOM, ITK)", "RAS (NIfTI, 3D Slicer)"};
+    static const Setting kSettings[] = {
+        {.key = "axes",
+         .at = member<&CoordinateSettings::axes>,
+         .words = "C&oordinates",
+         .help =
+             "How places of a patient are shown and given: as millimetres to the left, the back and the head, or to "
+             "the right, the front and the head. Nothing else changes, and files without a patient keep their own "
+             "coordinates.",
+         .choices = kAxes,
+         .option = "coordinates"},
+    };
+    return kSettings;
+}
+
+template <>
 std::span<const Setting> settingsOf<ComparisonView>() {
     using C = ComparisonView;
     constexpr auto hasB = [](const void* c) { return static_cast<const C*>(c)->b.has_value(); };

@@ -23,6 +23,18 @@ int largest(const Vec3& v) {
 
 } // namespace
 
+Vec3 inAxes(PatientAxes axes, const Geometry& geometry, const Vec3& world) {
+    const bool turns = axes == PatientAxes::Ras && geometry.worldAxes == WorldAxes::Patient;
+    return turns ? Vec3(0 - world.x, 0 - world.y, world.z) : world;
+}
+
+std::string coordinatesText(PatientAxes axes, const Geometry& geometry) {
+    if (geometry.worldAxes != WorldAxes::Patient) return {};
+    return axes == PatientAxes::Ras ? "RAS" : "LPS";
+}
+
+const char* lengthUnit(const Geometry& geometry) { return geometry.worldAxes == WorldAxes::Patient ? "mm" : "units"; }
+
 char patientLetter(int axis, bool positive) {
     constexpr std::array<const char*, 3> kLetters{"RL", "AP", "IS"};
     return kLetters[static_cast<std::size_t>(axis)][positive ? 1 : 0];

@@ -3,9 +3,25 @@
 
 #include <string>
 
+#include "base/enum_names.h"
 #include "volume/volume.h"
 
 namespace pellucid {
+
+/// In which coordinates places of a patient are shown and given: toward left, posterior, superior as DICOM and ITK have
+/// it, and as the world is here; or toward right, anterior, superior as NIfTI and 3D Slicer show them.
+enum class PatientAxes { Lps, Ras };
+template <>
+inline constexpr auto kNamesOf<PatientAxes> = enumNames("coordinates", "lps", "ras");
+
+/// A place or direction of the world in these coordinates, and just as well the other way round. Where the world is no
+/// patient's, there is but one kind of coordinates.
+Vec3 inAxes(PatientAxes axes, const Geometry& geometry, const Vec3& world);
+/// "LPS" or "RAS"; empty where the world is no patient's.
+std::string coordinatesText(PatientAxes axes, const Geometry& geometry);
+
+/// What lengths of the world are measured in: "mm" where it is a patient's, else "units".
+const char* lengthUnit(const Geometry& geometry);
 
 /// The letter of a direction along world axis x, y or z (0, 1, 2) in the patient's frame: L, P, S where `positive`,
 /// else R, A, I.

@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "cli_runner.h"
+#include "film/film.h"
 #include "options/setting_options.h"
 #include "session/session.h"
 
@@ -21,10 +22,10 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",         "samples", "presets", "generate",  "render",
-                                         "measure",      "fields",  "propose", "refine",    "optimize",
-                                         "probe",        "views",   "space",   "bench",     "sequence",
-                                         "saliency-map", "compare", "plot",    "reproduce", "study"};
+const std::vector<std::string> kCommands{"info",   "samples", "presets",   "generate", "render",       "measure",
+                                         "fields", "propose", "refine",    "optimize", "probe",        "rulers",
+                                         "views",  "space",   "bench",     "sequence", "saliency-map", "compare",
+                                         "plot",   "film",    "reproduce", "study"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
 
@@ -109,6 +110,8 @@ std::string manualOf(const std::string& group) {
     if (group == "light") return manualOf<Light>({"silhouettes", "occlusion", "depth_cue", "gradient_opacity"});
     if (group == "field") return manualOf<FieldView>();
     if (group == "ground") return manualOf<GroundView>();
+    if (group == "film") return manualOf<FilmSettings>();
+    if (group == "coordinates") return manualOf<CoordinateSettings>();
     if (group == "slice") return manualOf<SliceViews>();
     if (group == "refine") return manualOf<RefineSteps>();
     if (group == "optimize") return manualOf<OptimizeOptions>();

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "film/film.h"
 #include "options/setting_options.h"
 #include "session/session.h"
 
@@ -145,6 +146,8 @@ TEST_CASE("every setting goes through every door, and each refuses in the same w
     walk<FieldView>();
     walk<GroundView>();
     walk<SliceViews>();
+    walk<CoordinateSettings>();
+    walk<FilmSettings>();
     walk<PictureSaliencyView>();
     walk<ComparisonView>();
     walk<HsbMapping>();

@@ -28,20 +28,21 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/engines", {"base", "volume", "tf", "saliency", "render"}},
     {"src/bench", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/session", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
+    {"src/film", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
     {"src/study", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
     {"src/report",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study"}},
     {"app/cli",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "bench", "session", "study",
-      "report", "cli"}},
+      "report", "film", "cli"}},
     {"app/gui",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study", "report",
-      "gui"}},
+      "film", "gui"}},
     {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
-const std::set<std::string> kOurFolders{"base",     "volume",   "tf",      "saliency", "render",
-                                        "image_io", "optimize", "engines", "bench",    "session",
-                                        "study",    "report",   "cli",     "gui",      "gpu_check"};
+const std::set<std::string> kOurFolders{"base",     "volume",  "tf",    "saliency", "render", "image_io",
+                                        "optimize", "engines", "bench", "session",  "study",  "report",
+                                        "film",     "cli",     "gui",   "gpu_check"};
 
 /// The folders of app/gui: each may include those before its row, and itself. What lies beside them, main.cpp, all.
 const std::vector<std::set<std::string>> kGuiRows{{"jobs"},   {"store"},    {"widgets"},     {"dialogs"},

@@ -104,6 +104,21 @@ Variable randomDerived(Random& random) {
     return v;
 }
 
+std::vector<Ruler> randomRulers(Random& random) {
+    std::vector<Ruler> rulers;
+    for (int n = random.below(4); n > 0; --n) {
+        Ruler ruler{.kind = static_cast<RulerKind>(random.below(4))};
+        for (std::size_t p = 0; p < pointsOf(ruler.kind); ++p) ruler.points.push_back(oddVector(random, -1000, 1000));
+        if (ruler.kind == RulerKind::Sphere) ruler.radius = random.between(1e-3, 100);
+        if (ruler.kind == RulerKind::Box) ruler = boxRuler(ruler.points[0], ruler.points[1]);
+        if (random.chance(0.3)) ruler.name = "Länge \"ä\"";
+        ruler.shown = random.chance(0.7);
+        if (!rulerProblem(ruler).empty()) continue; // two points have come out the same
+        addRuler(rulers, ruler);
+    }
+    return rulers;
+}
+
 void addSeriesParts(Session& s, Random& random) {
     if (!s.isEmpty() && random.chance(0.4))
         s.variables.edit([&](std::vector<Variable>& all) { all.push_back(randomDerived(random)); });
@@ -376,6 +391,8 @@ Session randomSession(std::uint32_t number) {
     if (random.chance(0.7)) s.optimize = randomOptimize(random);
     if (random.chance(0.7)) s.refine = randomRefine(random);
     if (random.chance(0.7)) s.slices = randomSlices(random);
+    if (random.chance(0.5)) s.coordinates = CoordinateSettings{PatientAxes::Ras};
+    s.rulers = randomRulers(random);
     s.field = randomField(random);
     if (random.chance(0.5)) s.comparison = randomComparison(random, s);
     if (random.chance(0.7))

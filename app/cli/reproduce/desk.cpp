@@ -4,9 +4,9 @@
 
 #include "base/atomic_file.h"
 #include "base/check.h"
+#include "base/child_program.h"
 #include "base/json_file.h"
 #include "base/stopwatch.h"
-#include "child_program.h"
 #include "command_line.h"
 #include "reproduce/thesis_tfs.h"
 #include "tf/formats/tf_file.h"

@@ -29,6 +29,7 @@ Controllers::Controllers(Services& all) : services(all) {
     // The menus stand in the order in which their first actions come.
     opening.addActions();
     saving.addActions();
+    films.addActions();
     studies.addActions();
     addEditActions(services);
     starting.addActions();
@@ -48,6 +49,7 @@ Controllers::Controllers(Services& all) : services(all) {
     addThemeActions(services);
     clipHandles = &addClipHandlesAction(services);
     probe.addActions();
+    rulers.addActions();
 
     SessionStore& store = services.store();
     Actions& actions = services.actions();
@@ -69,8 +71,12 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(live, &LiveController::busyChanged);
     watch(starting, &StartController::busyChanged);
     watch(saving, &SaveController::busyChanged);
+    watch(films, &FilmController::busyChanged);
     watch(fields, &FieldController::busyChanged);
     watch(pictureSaliency, &PictureSaliencyController::busyChanged);
+    watch(rulers, &RulerController::busyChanged);
+    // Clicks are for one of the two.
+    QObject::connect(&rulers, &RulerController::placingChanged, &probe, &ProbeController::clear);
     watch(comparing, &ComparisonController::busyChanged);
     QObject::connect(&refining, &RefineController::pairWanted, &comparing,
                      &ComparisonController::compareWithRefinement);

@@ -5,6 +5,7 @@
 #include "controllers/comparison_controller.h"
 #include "controllers/feature_actions.h"
 #include "controllers/field_controller.h"
+#include "controllers/film_controller.h"
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
@@ -13,6 +14,7 @@
 #include "controllers/probe_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/refine_controller.h"
+#include "controllers/ruler_controller.h"
 #include "controllers/save_controller.h"
 #include "controllers/start_controller.h"
 #include "controllers/study_controller.h"
@@ -32,7 +34,9 @@ struct Controllers {
     FieldController fields{services}; ///< what is drawn in the place of the data
     LiveController live{services, optimizing};
     PictureSaliencyController pictureSaliency{services};
-    SaveController saving{services, fields, pictureSaliency};
+    RulerController rulers{services};
+    SaveController saving{services, fields, pictureSaliency, rulers};
+    FilmController films{services};
     OpenController opening{services, saving};
     StartController starting{services, opening};
     RecoveryController recovery{services, opening, saving};

@@ -4,6 +4,7 @@
 
 #include "controllers/field_controller.h"
 #include "controllers/picture_saliency_controller.h"
+#include "controllers/ruler_controller.h"
 #include "dialogs/ask_file.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
@@ -43,8 +44,8 @@ std::vector<ShareBar> presentBars(Services& services, const PictureSaliencyContr
 } // namespace
 
 SaveController::SaveController(Services& services, FieldController& fields,
-                               const PictureSaliencyController& pictureSaliency)
-    : m_services(services), m_fields(fields), m_pictureSaliency(pictureSaliency),
+                               const PictureSaliencyController& pictureSaliency, const RulerController& rulers)
+    : m_services(services), m_fields(fields), m_pictureSaliency(pictureSaliency), m_rulers(rulers),
       m_images(
           [](const Picture& picture, const JobControl& job) {
               const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
@@ -153,10 +154,12 @@ void SaveController::saveImage(const SaveImageOptions& options) {
     if (!m_services.store().hasVolume()) return;
     Picture picture{
         m_fields.picture(options.size.width(), options.size.height(), options.transparent), {}, options.path};
-    if (options.annotated)
+    if (options.annotated) {
         picture.around = m_fields.annotation(picture.input, *m_services.scene().session.reference);
-    else
+        addMeasures(picture.around, m_services.scene(), m_rulers.readings());
+    } else {
         picture.around.show = AnnotationChoice::none();
+    }
     const bool good = m_services.attempt(tr("Cannot save the image"), [&] {
         picture.input.settings.validate();
         checkImageSuffix(options.path.toStdString());

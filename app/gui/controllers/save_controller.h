@@ -11,12 +11,14 @@ namespace pellucid::gui {
 
 class FieldController;
 class PictureSaliencyController;
+class RulerController;
 class Services;
 
 class SaveController : public QObject {
     Q_OBJECT
 public:
-    SaveController(Services& services, FieldController& fields, const PictureSaliencyController& pictureSaliency);
+    SaveController(Services& services, FieldController& fields, const PictureSaliencyController& pictureSaliency,
+                   const RulerController& rulers);
 
     void addActions();
 
@@ -84,6 +86,7 @@ private:
     Services& m_services;
     FieldController& m_fields;
     const PictureSaliencyController& m_pictureSaliency;
+    const RulerController& m_rulers;
     QString m_tfPath, m_sessionPath, m_busyText;
     QSize m_seen;
     QAction* m_barsAction = nullptr;

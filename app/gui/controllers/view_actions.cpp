@@ -48,6 +48,8 @@ constexpr PartText kParts[] = {
     {"frameLegendAction", QT_TR_NOOP("Colour le&gend"),
      QT_TR_NOOP("Colours and opacities over the values of the data")},
     {"frameTitleAction", QT_TR_NOOP("&Title"), QT_TR_NOOP("The name of the volume")},
+    {"frameMeasuresAction", QT_TR_NOOP("&Measures"),
+     QT_TR_NOOP("The distances, angles, spheres and boxes of the panel Measures, in the picture and in slices")},
 };
 static_assert(std::size(kParts) == std::size(kAnnotationParts));
 

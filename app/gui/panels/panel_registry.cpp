@@ -6,15 +6,28 @@ namespace pellucid::gui {
 using Panel = PanelInfo();
 Panel transferFunctionPanel, playerPanel, featuresPanel, refinePanel, influencePanel, convergencePanel, displayPanel,
     lightPanel, clipPanel, fieldsPanel, galleryPanel, viewsPanel, settingsPanel, spacePanel, variablesPanel,
-    temporalPanel, pictureSaliencyPanel, comparePanel;
+    temporalPanel, pictureSaliencyPanel, comparePanel, measuresPanel;
 
 std::vector<PanelInfo> panelRegistry() {
     return {transferFunctionPanel(),
             playerPanel(), // below the one before it, which has no tabs yet: else it would become a tab, too
-            featuresPanel(),         refinePanel(),  influencePanel(), convergencePanel(),
-            displayPanel(),          lightPanel(),   clipPanel(),      fieldsPanel(),
-            pictureSaliencyPanel(),  comparePanel(), galleryPanel(),   viewsPanel(),
-            settingsPanel(),         spacePanel(),   variablesPanel(), temporalPanel()};
+            featuresPanel(),
+            refinePanel(),
+            influencePanel(),
+            convergencePanel(),
+            displayPanel(),
+            lightPanel(),
+            clipPanel(),
+            fieldsPanel(),
+            measuresPanel(),
+            pictureSaliencyPanel(),
+            comparePanel(),
+            galleryPanel(),
+            viewsPanel(),
+            settingsPanel(),
+            spacePanel(),
+            variablesPanel(),
+            temporalPanel()};
 }
 
 } // namespace pellucid::gui

@@ -108,8 +108,10 @@ ProbePanel::ProbePanel(Services& services, ProbeController& probe, VolumeView& v
     close->setFocusPolicy(Qt::TabFocus);
     m_text->setTextInteractionFlags(Qt::TextSelectableByMouse);
     m_text->setCursor(Qt::IBeamCursor);
-    m_text->setToolTip(tr("At the mark: value in data units, place in world units (mm to the left, back and head of a "
-                          "patient). Can be selected and copied."));
+    m_text->setToolTip(
+        tr("At the mark: value in data units, and the place: of a patient in mm, LPS (to the left, the back "
+           "and the head) or RAS (to the right, the front and the head), as chosen in the panel "
+           "Measures. Can be selected and copied."));
     m_readout->setMinimumHeight(fontMetrics().height());
     m_readout->setTextFormat(Qt::PlainText);
     m_title->setTextFormat(Qt::PlainText);
@@ -177,13 +179,11 @@ void ProbePanel::refreshText() {
                                        percent(ray.shares[static_cast<std::size_t>(f)]))
                             : tr("In no feature"));
     const Volume& volume = *scene.volume;
-    const double span = volume.range().hi - volume.range().lo, size = 2 * volume.geometry().radius();
+    const double span = volume.range().hi - volume.range().lo;
     const auto value = m_probe.valueAtPlace();
-    const Vec3& p = m_probe.place();
     QString text = tr("%1 opaque").arg(percent(ray.alpha));
     text += tr(" · value %1").arg(value ? numberText(*value, span) : tr("invalid"));
-    text += tr(" · at %1, %2, %3").arg(numberText(p.x, size), numberText(p.y, size), numberText(p.z, size));
-    if (volume.geometry().worldAxes == WorldAxes::Patient) text += tr(" mm");
+    text += tr(" · at %1").arg(placeText(volume.geometry(), scene.session.coordinates->axes, m_probe.place()));
     m_text->setText(text);
     const bool composite = scene.session.display->mode == RenderMode::Composite;
     m_hint->setVisible(!composite);

@@ -20,7 +20,7 @@ namespace {
 constexpr int kRow = 22, kStrip = 6;
 
 QString unitOf(const Scene& scene) {
-    return scene.volume->geometry().worldAxes == WorldAxes::Patient ? QObject::tr("mm") : QObject::tr("units");
+    return QLatin1String(lengthUnit(scene.volume->geometry()));
 }
 
 QString nameOf(const ProbeController& probe, int feature) {

@@ -25,6 +25,7 @@ void AnnotationLayer::paint(QPainter& painter, const OverlayView& view) {
     } else {
         input = annotationInput(pictureInput(view.scene, size.width(), size.height()), show);
     }
+    input.axes = view.scene.session.coordinates->axes; // measures have a layer of their own
     if (!input.show.any()) return;
     for (const Mark& mark : annotationMarks(input)) drawMark(painter, mark);
 }

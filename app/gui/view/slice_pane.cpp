@@ -16,6 +16,8 @@
 
 #include "base/stopwatch.h"
 #include "controllers/field_controller.h"
+#include "controllers/ruler_controller.h"
+#include "render/mark_maker.h"
 #include "services/services.h"
 #include "store/edits.h"
 #include "store/view_edits.h"
@@ -55,8 +57,6 @@ void haloLine(QPainter& painter, const QLineF& line, const QColor& color) {
     painter.drawLine(line);
 }
 
-const char* unitOf(const Geometry& geometry) { return geometry.worldAxes == WorldAxes::Patient ? "mm" : "units"; }
-
 } // namespace
 
 QColor slicePlaneColor(int worldAxis) {
@@ -65,9 +65,10 @@ QColor slicePlaneColor(int worldAxis) {
     return kColors.at(static_cast<std::size_t>(worldAxis));
 }
 
-SlicePane::SlicePane(Services& services, const FieldController& fields, int worldAxis, Lane& lane, QWidget* parent)
-    : QWidget(parent), m_services(services), m_fields(fields), m_worldAxis(worldAxis),
-      m_maximize(new QToolButton(this)),
+SlicePane::SlicePane(Services& services, const FieldController& fields, RulerController& rulers, int worldAxis,
+                     Lane& lane, QWidget* parent)
+    : QWidget(parent), m_services(services), m_fields(fields), m_rulers(rulers), m_rulerHand(rulers),
+      m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
       m_job([](const Request& request, const JobControl&) { return drawn(request); },
             [this](const Request& request, Drawn& result) { show(request, result); }, WhenBusy::FinishOld, &lane) {
     const QLatin1Char axisLetter("XYZ"[worldAxis]);
@@ -85,6 +86,7 @@ SlicePane::SlicePane(Services& services, const FieldController& fields, int worl
     setMaximized(false);
     connect(m_maximize, &QToolButton::clicked, this, &SlicePane::maximizeWanted);
     connect(&services.store(), &SessionStore::changed, this, &SlicePane::follow);
+    connect(&rulers, &RulerController::changed, this, qOverload<>(&QWidget::update));
     connect(&fields, &FieldController::changed, this, [this] {
         request();
         if (isHidden()) return;
@@ -132,7 +134,7 @@ SlicePlane SlicePane::plane() const { return planeOfSize(width(), height()); }
 
 void SlicePane::follow(const Scene& before, const Scene& after) {
     if (before.series != after.series) {
-        m_motion = Motion::None;
+        if (std::exchange(m_motion, Motion::None) == Motion::Ruler) m_rulerHand.end(false, m_services.store());
         m_zoom = 1;
         m_center.reset();
         m_image = {}; // nothing of the old one may be seen any more
@@ -142,7 +144,8 @@ void SlicePane::follow(const Scene& before, const Scene& after) {
     if (m_motion == Motion::Window && m_moved && !m_services.store().isPreviewing()) m_motion = Motion::None;
     request();
     if (isHidden()) return;
-    if (before.volume != after.volume || before.session.slices != after.session.slices || !(before.tf == after.tf)) {
+    if (before.volume != after.volume || before.session.slices != after.session.slices ||
+        before.session.coordinates != after.session.coordinates || !(before.tf == after.tf)) {
         hover(m_mouse);
         update();
     }
@@ -237,10 +240,15 @@ void SlicePane::step(int slices) {
     moveCrosshair(m_services.store(), voxel);
 }
 
-void SlicePane::moveCrosshairTo(const QPointF& point) {
-    moveCrosshair(m_services.store(),
-                  voxelAtPixel(m_services.scene().volume->geometry(), plane(), {point.x(), point.y()}));
+Vec3 SlicePane::voxelAt(const QPointF& point) const {
+    return voxelAtPixel(m_services.scene().volume->geometry(), plane(), {point.x(), point.y()});
 }
+
+Vec3 SlicePane::worldAt(const QPointF& point) const {
+    return m_services.scene().volume->geometry().worldFromVoxel(voxelAt(point));
+}
+
+void SlicePane::moveCrosshairTo(const QPointF& point) { moveCrosshair(m_services.store(), voxelAt(point)); }
 
 void SlicePane::dragWindow(const QPointF& way) {
     if (m_services.isReadOnly()) return;
@@ -260,7 +268,7 @@ void SlicePane::hover(const std::optional<QPointF>& point) {
     m_hovered.reset();
     if (point && m_services.store().hasVolume() && !isHidden()) {
         const Volume& volume = *m_services.scene().volume;
-        const Vec3 voxel = voxelAtPixel(volume.geometry(), plane(), {point->x(), point->y()});
+        const Vec3 voxel = voxelAt(*point);
         const Vec3 lo = volume.geometry().voxelBoxMin(), hi = volume.geometry().voxelBoxMax();
         if (glm::all(glm::greaterThanEqual(voxel, lo)) && glm::all(glm::lessThanEqual(voxel, hi)))
             m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false), {}};
@@ -286,11 +294,7 @@ QString SlicePane::hoverText() const {
             text += "  " + QString::fromStdString(scene.tf.features[static_cast<std::size_t>(feature)].name);
     }
     if (m_hovered->field) text = m_fields.valueText(*m_hovered->field) + "\n" + text;
-    const double size = 2 * geometry.radius();
-    const Vec3& w = m_hovered->world;
-    return text + QStringLiteral("\n%1, %2, %3 %4")
-                      .arg(numberText(w.x, size), numberText(w.y, size), numberText(w.z, size),
-                           QLatin1String(unitOf(geometry)));
+    return text + "\n" + placeText(geometry, scene.session.coordinates->axes, m_hovered->world);
 }
 
 bool SlicePane::onTitle(const QPointF& point) const { return point.y() < kTitle; }
@@ -299,13 +303,7 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
     if (m_motion != Motion::None || !m_services.store().hasVolume()) return; // the first button decides
     switch (event->button()) {
     case Qt::LeftButton:
-        if (event->modifiers().testFlag(Qt::ShiftModifier)) {
-            m_motion = Motion::Pan;
-        } else if (!onTitle(event->position())) {
-            m_motion = Motion::Crosshair;
-            m_crosshairBefore = crosshairOf(m_services.scene());
-            moveCrosshairTo(event->position());
-        }
+        pressLeft(*event);
         break;
     case Qt::MiddleButton:
         m_motion = Motion::Pan;
@@ -324,15 +322,42 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
     m_moved = false;
 }
 
+void SlicePane::pressLeft(const QMouseEvent& event) {
+    const QPointF point = event.position();
+    if (event.modifiers().testFlag(Qt::ShiftModifier)) {
+        m_motion = Motion::Pan;
+    } else if (onTitle(point)) {
+        return;
+    } else if (m_rulers.placing()) {
+        m_rulers.addPoint(worldAt(point));
+    } else if (m_rulerHand.press(rulerHandles(), point)) {
+        m_services.store().commit();
+        m_motion = Motion::Ruler;
+    } else {
+        m_motion = Motion::Crosshair;
+        m_crosshairBefore = crosshairOf(m_services.scene());
+        moveCrosshairTo(point);
+    }
+}
+
+std::vector<RulerHandle> SlicePane::rulerHandles() const {
+    return pellucid::rulerHandles(m_rulers.draggable(), m_services.scene().volume->geometry(), plane());
+}
+
 void SlicePane::mouseMoveEvent(QMouseEvent* event) {
     const QPointF point = event->position();
-    if (m_motion == Motion::None) setCursor(onTitle(point) ? Qt::ArrowCursor : Qt::CrossCursor);
+    if (m_motion == Motion::None && m_services.store().hasVolume()) {
+        if (m_rulerHand.hover(rulerHandles(), point)) update();
+        setCursor(onTitle(point) ? Qt::ArrowCursor : m_rulerHand.isOver() ? Qt::OpenHandCursor : Qt::CrossCursor);
+        m_rulers.pointAt(worldAt(point));
+    }
     if (m_motion == Motion::None || !m_services.store().hasVolume()) return hover(point);
     if (!m_moved && (point - m_pressed).manhattanLength() < 3) return;
     m_moved = true;
     if (m_motion == Motion::Crosshair) moveCrosshairTo(point);
     if (m_motion == Motion::Pan) pan(point - m_last);
     if (m_motion == Motion::Window) dragWindow(point - m_pressed);
+    if (m_motion == Motion::Ruler) m_rulerHand.drag(worldAt(point));
     m_last = point;
     hover(point);
 }
@@ -342,11 +367,13 @@ void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
     const Motion motion = std::exchange(m_motion, Motion::None);
     m_button = Qt::NoButton;
     if (motion == Motion::Window && m_moved) m_services.store().commit();
+    if (motion == Motion::Ruler) m_rulerHand.end(true, m_services.store());
     update(); // the numbers of the drag go
 }
 
 void SlicePane::mouseDoubleClickEvent(QMouseEvent* event) {
     if (!m_services.store().hasVolume()) return;
+    if (event->button() == Qt::LeftButton && m_rulers.placing()) return mousePressEvent(event); // two quick clicks
     if (event->button() == Qt::RightButton && !m_services.isReadOnly() && m_fields.field() == nullptr)
         return resetGreyWindow(m_services.store());
     if (event->button() != Qt::LeftButton) return;
@@ -389,6 +416,7 @@ void SlicePane::keyPressEvent(QKeyEvent* event) {
     default:
         break;
     }
+    if (m_motion == Motion::None && m_rulerHand.key(event->key())) return;
     QWidget::keyPressEvent(event);
 }
 
@@ -396,12 +424,16 @@ void SlicePane::cancelDrag() {
     const Motion motion = std::exchange(m_motion, Motion::None);
     if (motion == Motion::Crosshair && m_crosshairBefore) m_services.store().setCrosshair(*m_crosshairBefore);
     if (motion == Motion::Window && m_moved) m_services.store().cancel();
+    if (motion == Motion::Ruler) m_rulerHand.end(false, m_services.store());
     update();
 }
 
 void SlicePane::leaveEvent(QEvent* event) {
     QWidget::leaveEvent(event);
-    if (m_motion == Motion::None) hover({});
+    if (m_motion != Motion::None) return;
+    hover({});
+    m_rulerHand.leave();
+    m_rulers.pointAt({});
 }
 
 void SlicePane::resizeEvent(QResizeEvent* event) {
@@ -417,7 +449,7 @@ void SlicePane::showEvent(QShowEvent* event) {
 
 void SlicePane::hideEvent(QHideEvent* event) {
     QWidget::hideEvent(event);
-    m_motion = Motion::None;
+    if (std::exchange(m_motion, Motion::None) == Motion::Ruler) m_rulerHand.end(false, m_services.store());
     if (m_mouse) hover({});
 }
 
@@ -425,14 +457,15 @@ QString SlicePane::titleText() const {
     const Geometry& geometry = m_services.scene().volume->geometry();
     const int a = axis();
     const Vec3 voxel = crosshairOf(m_services.scene());
-    const double at = geometry.worldFromVoxel(voxel)[m_worldAxis];
+    const PatientAxes axes = m_services.scene().session.coordinates->axes;
+    const double at = inAxes(axes, geometry, geometry.worldFromVoxel(voxel))[m_worldAxis];
     QString name = QString::fromLatin1(sliceName(geometry, a));
     if (geometry.worldAxes == WorldAxes::Patient) name[0] = name[0].toUpper(); // a word, not an axis
     QString text = tr("%1  %2 of %3   %4 %5")
                        .arg(name)
                        .arg(static_cast<int>(std::lround(voxel[a])) + 1)
                        .arg(geometry.dims[a])
-                       .arg(numberText(at, 2 * geometry.radius()), QLatin1String(unitOf(geometry)));
+                       .arg(numberText(at, 2 * geometry.radius()), QLatin1String(lengthUnit(geometry)));
     for (const QString& line : {m_fields.name(), m_fields.stateText()})
         if (!line.isEmpty()) text += "\n" + line;
     return text;
@@ -472,6 +505,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
     painter.setRenderHint(QPainter::Antialiasing);
     const SlicePlane shown = plane();
     paintCrosshair(painter, shown);
+    paintRulers(painter, shown);
 
     QFont small = font();
     small.setPointSizeF(small.pointSizeF() * 0.9);
@@ -513,6 +547,12 @@ void SlicePane::paintCrosshair(QPainter& painter, const SlicePlane& plane) const
     haloLine(painter, {at.x, at.y + kGap, at.x, static_cast<double>(height())}, upright);
     haloLine(painter, {0.0, at.y, at.x - kGap, at.y}, level);
     haloLine(painter, {at.x + kGap, at.y, static_cast<double>(width()), at.y}, level);
+}
+
+void SlicePane::paintRulers(QPainter& painter, const SlicePlane& plane) const {
+    const Geometry& geometry = m_services.scene().volume->geometry();
+    const double cap = MarkMaker(plane.width, plane.height, 1, {}).capHeight;
+    m_rulerHand.paint(painter, rulerMarks(m_rulers.shown(), geometry, plane, {1, cap}), rulerHandles());
 }
 
 QStringList SlicePane::edgeLetters() const {
@@ -559,7 +599,7 @@ void SlicePane::paintScale(QPainter& painter, const SlicePlane& plane) const {
         haloLine(painter, line, theme::kMark);
     const QFontMetricsF metrics(painter.font());
     const QString text = QStringLiteral("%1 %2").arg(numberText(length, length),
-                                                     QLatin1String(unitOf(m_services.scene().volume->geometry())));
+                                                     QLatin1String(lengthUnit(m_services.scene().volume->geometry())));
     haloText(painter, {right - metrics.horizontalAdvance(text), y - 6}, text, theme::kMark);
 }
 

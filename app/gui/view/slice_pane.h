@@ -9,6 +9,7 @@
 #include "jobs/job.h"
 #include "session/slice_input.h"
 #include "store/session_store.h"
+#include "view/ruler_layer.h"
 
 class QToolButton;
 
@@ -27,9 +28,10 @@ QColor slicePlaneColor(int worldAxis);
 class SlicePane : public QWidget {
     Q_OBJECT
 public:
-    /// `fields` says what is drawn in the place of the data. `lane` draws the slices of all panes, one after the other;
-    /// both outlive this.
-    SlicePane(Services& services, const FieldController& fields, int worldAxis, Lane& lane, QWidget* parent = nullptr);
+    /// `fields` says what is drawn in the place of the data, `rulers` what is measured. `lane` draws the slices of all
+    /// panes, one after the other; all outlive this.
+    SlicePane(Services& services, const FieldController& fields, RulerController& rulers, int worldAxis, Lane& lane,
+              QWidget* parent = nullptr);
 
     int worldAxis() const { return m_worldAxis; }
     int axis() const; ///< the index axis; there is a volume
@@ -73,7 +75,7 @@ protected:
     void paintEvent(QPaintEvent* event) override;
 
 private:
-    enum class Motion { None, Crosshair, Pan, Window };
+    enum class Motion { None, Crosshair, Pan, Window, Ruler };
     struct Request {
         SliceInput input;
         SlicePlane plane;    ///< in device pixels
@@ -93,6 +95,8 @@ private:
     void zoomAbout(const QPointF& point, double factor);
     void pan(const QPointF& way);
     void step(int slices);
+    Vec3 voxelAt(const QPointF& point) const;
+    Vec3 worldAt(const QPointF& point) const;
     void moveCrosshairTo(const QPointF& point);
     void dragWindow(const QPointF& way);
     void hover(const std::optional<QPointF>& point);
@@ -100,12 +104,17 @@ private:
     bool onTitle(const QPointF& point) const;
     void paintTitle(QPainter& painter) const;
     void paintLegend(QPainter& painter) const;
+    std::vector<RulerHandle> rulerHandles() const;
+    void pressLeft(const QMouseEvent& event);
+    void paintRulers(QPainter& painter, const SlicePlane& plane) const;
     void paintCrosshair(QPainter& painter, const SlicePlane& plane) const;
     void paintLetters(QPainter& painter) const;
     void paintScale(QPainter& painter, const SlicePlane& plane) const;
 
     Services& m_services;
     const FieldController& m_fields;
+    RulerController& m_rulers;
+    RulerHand m_rulerHand;
     const int m_worldAxis;
     QToolButton* m_maximize;
     double m_zoom = 1;            ///< 1: the whole plane

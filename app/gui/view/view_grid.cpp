@@ -22,7 +22,7 @@ constexpr double kLeast = 0.12; // of the area, for each row and column
 
 } // namespace
 
-ViewGrid::ViewGrid(Services& services, const FieldController& fields, VolumeView& volume,
+ViewGrid::ViewGrid(Services& services, const FieldController& fields, RulerController& rulers, VolumeView& volume,
                    ComparisonController& comparing, QWidget* parent)
     : QWidget(parent), m_services(services), m_volume(volume), m_comparing(comparing),
       m_bar(new SliceBar(services, this)) {
@@ -34,7 +34,7 @@ ViewGrid::ViewGrid(Services& services, const FieldController& fields, VolumeView
     connect(m_compared, &ComparedView::pictureShown, this, &ViewGrid::slicesShown);
     connect(&comparing, &ComparisonController::sceneChanged, this, &ViewGrid::followComparison);
     for (int a = 0; a < 3; ++a) {
-        auto* pane = new SlicePane(services, fields, a, m_lane, this);
+        auto* pane = new SlicePane(services, fields, rulers, a, m_lane, this);
         m_panes[static_cast<std::size_t>(a)] = pane;
         pane->hide();
         connect(pane, &SlicePane::pictureShown, this, &ViewGrid::slicesShown);

@@ -14,6 +14,7 @@ namespace pellucid::gui {
 
 class ComparedView;
 class ComparisonController;
+class RulerController;
 class SliceBar;
 class WipeDivider;
 
@@ -24,9 +25,9 @@ class ViewGrid : public QWidget {
     Q_OBJECT
     Lane m_lane; // draws slices; outlives the panes, which are children
 public:
-    /// `fields` says what slices show in the place of the data. All outlive this.
-    ViewGrid(Services& services, const FieldController& fields, VolumeView& volume, ComparisonController& comparing,
-             QWidget* parent = nullptr);
+    /// `fields` says what slices show in the place of the data, `rulers` what is measured in them. All outlive this.
+    ViewGrid(Services& services, const FieldController& fields, RulerController& rulers, VolumeView& volume,
+             ComparisonController& comparing, QWidget* parent = nullptr);
     ~ViewGrid() override;
 
     VolumeView& volume() { return m_volume; }

@@ -1,5 +1,7 @@
 #include "view/view_overlay.h"
 
+#include <algorithm>
+
 #include <QPainter>
 
 namespace pellucid::gui {
@@ -47,6 +49,16 @@ void ViewOverlay::drag(const QPointF& point, Qt::KeyboardModifiers keys) {
 void ViewOverlay::end(bool kept) {
     if (m_holder != nullptr) m_holder->end(kept);
     m_holder = nullptr;
+}
+
+bool ViewOverlay::wantsClicks() const {
+    return m_store.hasVolume() &&
+           std::any_of(m_layers.begin(), m_layers.end(), [](const auto& layer) { return layer->wantsClicks(); });
+}
+
+void ViewOverlay::click(const QPointF& point) {
+    for (auto layer = m_layers.rbegin(); layer != m_layers.rend(); ++layer)
+        if ((*layer)->wantsClicks()) return (*layer)->click(point, overlayView());
 }
 
 bool ViewOverlay::key(int key) {

@@ -37,6 +37,9 @@ public:
     virtual void drag(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {}
     /// The end of what a press began: `kept` by the release, or given up, as if nothing had been pressed.
     virtual void end(bool /*kept*/) {}
+    /// Clicks, a press and release in one place that no press() has taken, are for this layer.
+    virtual bool wantsClicks() const { return false; }
+    virtual void click(const QPointF& /*point*/, const OverlayView& /*view*/) {}
     /// A key that the view has got (Qt::Key); true: it is taken.
     virtual bool key(int /*key*/, const OverlayView& /*view*/) { return false; }
 };
@@ -55,6 +58,8 @@ public:
     void drag(const QPointF& point, Qt::KeyboardModifiers keys);
     void release() { end(true); }
     void cancel() { end(false); }
+    bool wantsClicks() const;
+    void click(const QPointF& point); ///< wantsClicks() is true
     bool key(int key);
     Qt::CursorShape cursorAt(const QPointF& point);
 

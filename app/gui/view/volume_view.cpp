@@ -184,10 +184,13 @@ void VolumeView::mouseMoveEvent(QMouseEvent* event) {
 
 void VolumeView::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() == Qt::LeftButton) m_overlay->release();
-    if (m_hand.release(*event)) Q_EMIT clicked(event->position());
+    if (!m_hand.release(*event)) return;
+    if (m_overlay->wantsClicks()) return m_overlay->click(event->position());
+    Q_EMIT clicked(event->position());
 }
 
 void VolumeView::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (m_overlay->wantsClicks()) return mousePressEvent(event); // two quick clicks are two
     if (event->button() == Qt::LeftButton) m_hand.fit();
 }
 

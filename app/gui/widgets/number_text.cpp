@@ -19,4 +19,14 @@ QString stepText(double inD0) {
     return QString::fromStdString(shortText(inD0));
 }
 
+QString placeText(const Geometry& geometry, PatientAxes axes, const Vec3& world) {
+    const double size = 2 * geometry.radius();
+    const Vec3 place = inAxes(axes, geometry, world);
+    const QString text = QStringLiteral("%1, %2, %3 %4")
+                             .arg(numberText(place.x, size), numberText(place.y, size), numberText(place.z, size),
+                                  QLatin1String(lengthUnit(geometry)));
+    const std::string letters = coordinatesText(axes, geometry);
+    return letters.empty() ? text : QStringLiteral("%1 (%2)").arg(text, QString::fromStdString(letters));
+}
+
 } // namespace pellucid::gui

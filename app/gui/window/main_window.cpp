@@ -24,6 +24,7 @@
 #include "view/difference_layer.h"
 #include "view/light_layer.h"
 #include "view/region_layer.h"
+#include "view/ruler_layer.h"
 #include "view/saliency_layer.h"
 #include "widgets/layouts.h"
 #include "widgets/named.h"
@@ -66,7 +67,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_services(std::make_unique<Services>(this)),
       m_controllers(std::make_unique<Controllers>(*m_services)),
       m_view(new VolumeView(m_services->store(), renderer, this, &m_controllers->fields)),
-      m_views(new ViewGrid(*m_services, m_controllers->fields, *m_view, m_controllers->comparing, this)),
+      m_views(new ViewGrid(*m_services, m_controllers->fields, m_controllers->rulers, *m_view, m_controllers->comparing,
+                           this)),
       m_row(new QHBoxLayout), m_room(new Room(*this, *m_services, *m_row)) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
@@ -81,6 +83,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     m_view->overlay().add(std::make_unique<SliceLayer>());
     addClipHandles(*m_services, *m_controllers->clipHandles, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_services, m_view->overlay()));
+    m_view->overlay().add(std::make_unique<RulerLayer>(m_controllers->rulers, m_services->store(), m_view->overlay()));
     addProbe(*m_services, m_controllers->probe, *m_view);
     m_view->overlay().add(std::make_unique<RegionLayer>(*m_services, m_controllers->refining, m_view->overlay()));
     m_room->addActions();
@@ -88,12 +91,13 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     addHelpActions();
     m_services->actions().build(*this);
     m_controllers->opening.updateRecentFiles();
-    new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, m_controllers->studies, *m_view,
-                   *statusBar());
+    new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, m_controllers->films,
+                   m_controllers->studies, *m_view, *statusBar());
 
     connect(m_view, &VolumeView::pictureShown, this, [this] {
         const PictureInfo& picture = m_view->picture();
         m_controllers->saving.setSeenSize({picture.width, picture.height});
+        m_controllers->films.setSeenSize({picture.width, picture.height});
         m_controllers->refining.setViewSize({picture.width, picture.height});
         m_controllers->pictureSaliency.setPictureSize({picture.width, picture.height});
         m_controllers->comparing.setPictureSize({picture.width, picture.height});
@@ -106,6 +110,10 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     connect(m_services.get(), &Services::idleChanged, this, &MainWindow::settledChanged);
     connect(&m_services->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
     connect(&m_controllers->saving, &SaveController::sessionPathChanged, this, &MainWindow::updateTitle);
+    connect(m_view, &VolumeView::clicked, this, [this] { m_controllers->rulers.select(0); });
+    connect(&m_controllers->rulers, &RulerController::placingChanged, this, [this] {
+        if (m_controllers->rulers.placing()) m_view->setFocus(); // Esc is for it
+    });
     connect(&m_controllers->views, &ViewSearchController::glimpsed, m_view, &VolumeView::lookFrom);
     updateTitle();
     resize(QSize(1280, 800).boundedTo(screen()->availableSize()));

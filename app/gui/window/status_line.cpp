@@ -2,6 +2,7 @@
 
 #include <QStatusBar>
 
+#include "controllers/film_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
 #include "controllers/study_controller.h"
@@ -19,10 +20,10 @@ constexpr int kMessageTime = 4000; // milliseconds
 
 } // namespace
 
-StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, StudyController& studies,
-                       VolumeView& view, QStatusBar& bar)
-    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_studies(studies), m_view(view),
-      m_bar(bar), m_volume(named(new QLabel(&bar), "volumeLabel")),
+StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
+                       StudyController& studies, VolumeView& view, QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_films(films), m_studies(studies),
+      m_view(view), m_bar(bar), m_volume(named(new QLabel(&bar), "volumeLabel")),
       m_camera(named(new QLabel(&bar), "cameraLabel",
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
@@ -38,9 +39,10 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     bar.addWidget(m_cancel);
     for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
 
-    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &studies] {
+    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &films, &studies] {
         opening.cancel();
         saving.cancel();
+        films.cancel();
         studies.cancel();
     });
     const auto watch = [this](auto& controller) {
@@ -55,6 +57,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     };
     watch(opening);
     watch(saving);
+    watch(films);
     watch(studies);
     connect(&services, &Services::message, this,
             [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
@@ -120,9 +123,12 @@ void StatusLine::followFigures() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy();
-    const bool busy = opening || saving || m_studies.isBusy();
-    const QString text = opening ? m_opening.busyText() : saving ? m_saving.busyText() : m_studies.busyText();
+    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), filming = m_films.isBusy();
+    const bool busy = opening || saving || filming || m_studies.isBusy();
+    const QString text = opening   ? m_opening.busyText()
+                         : saving  ? m_saving.busyText()
+                         : filming ? m_films.busyText()
+                                   : m_studies.busyText();
     if (busy && (m_cancel->isHidden() || text != m_background->text())) m_progress->setRange(0, 0);
     m_background->setText(text);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})

@@ -12,6 +12,7 @@ namespace pellucid::gui {
 
 class VolumeView;
 class OpenController;
+class FilmController;
 class SaveController;
 class Services;
 class StudyController;
@@ -19,8 +20,8 @@ class StudyController;
 class StatusLine : public QObject {
     Q_OBJECT
 public:
-    StatusLine(Services& services, OpenController& opening, SaveController& saving, StudyController& studies,
-               VolumeView& view, QStatusBar& bar);
+    StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
+               StudyController& studies, VolumeView& view, QStatusBar& bar);
 
 private:
     void followScene();
@@ -31,6 +32,7 @@ private:
     Services& m_services;
     OpenController& m_opening;
     SaveController& m_saving;
+    FilmController& m_films;
     StudyController& m_studies;
     VolumeView& m_view;
     QStatusBar& m_bar;

@@ -1,4 +1,4 @@
-#include "child_program.h"
+#include "base/child_program.h"
 
 #include <array>
 #include <cerrno>
@@ -17,7 +17,7 @@
 
 extern char** environ;
 
-namespace pellucid::cli {
+namespace pellucid {
 
 namespace {
 
@@ -113,4 +113,4 @@ ChildEnd runChild(const ChildRun& run, const std::stop_token& stop) {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), readBack(error.get())};
 }
 
-} // namespace pellucid::cli
+} // namespace pellucid

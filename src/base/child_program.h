@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace pellucid::cli {
+namespace pellucid {
 
 struct ChildRun {
     std::filesystem::path program; ///< absolute
@@ -27,4 +27,4 @@ struct ChildEnd {
 /// requested meanwhile.
 ChildEnd runChild(const ChildRun& run, const std::stop_token& stop);
 
-} // namespace pellucid::cli
+} // namespace pellucid

@@ -1,0 +1,98 @@
+#include "controllers/film_controller.h"
+
+#include <QDir>
+#include <QFileInfo>
+#include <QMessageBox>
+
+#include "dialogs/ask_file.h"
+#include "dialogs/film_dialog.h"
+#include "film/movie_file.h"
+#include "render/camera_motion.h"
+#include "services/services.h"
+
+namespace pellucid::gui {
+namespace {
+
+QString presentView(const Scene& scene) {
+    const ViewAngles view = viewAngles(scene.camera, scene.volume->geometry());
+    return QStringLiteral("%1,%2,%3")
+        .arg(QString::number(view.azimuth, 'f', 1), QString::number(view.elevation, 'f', 1),
+             QString::number(view.zoom, 'f', 2));
+}
+
+} // namespace
+
+FilmController::FilmController(Services& services)
+    : m_services(services),
+      m_job([](const std::shared_ptr<const FilmTask>& task,
+               const JobControl& job) { return std::make_shared<const FilmResult>(makeFilm(*task, job)); },
+            [this](const std::shared_ptr<const FilmTask>& task, std::shared_ptr<const FilmResult>& film) {
+                for (const std::string& frame : film->passedOver)
+                    m_services.notices().add({tr("Not in the film: %1").arg(QString::fromStdString(frame))});
+                const QString path = QString::fromStdString(task->path);
+                Q_EMIT m_services.message(
+                    tr("Saved %1: %L2 pictures").arg(QFileInfo(path).fileName()).arg(film->pictures));
+                Q_EMIT saved(path);
+            },
+            WhenBusy::Queue) {
+    connect(&m_job, &JobBase::busyChanged, this, &FilmController::busyChanged);
+    connect(&m_job, &JobBase::progress, this, &FilmController::progress);
+    connect(&m_job, &JobBase::cancelled, this, &FilmController::cancelled);
+    services.showFailuresOf(m_job, tr("Cannot save the film"));
+}
+
+FilmController::~FilmController() = default;
+
+QString FilmController::busyText() const { return tr("Saving %1…").arg(m_name); }
+
+void FilmController::addActions() {
+    ActionMenu menu(m_services.actions(), tr("&File"), [this] { return m_services.store().hasVolume(); });
+    menu.add("saveFilmAction", tr("Save &film…"), {},
+             tr("The volume turning, the frames of a series, or a way from view to view, as a film (MP4) or pictures"),
+             [this] { choose(); });
+}
+
+void FilmController::save(const FilmTask& task) {
+    if (!m_services.attempt(tr("Cannot save the film"), [&] { checkFilm(task); })) return;
+    m_name = QFileInfo(QString::fromStdString(task.path)).fileName();
+    m_job.start(std::make_shared<const FilmTask>(task), QString::fromStdString(task.path));
+    Q_EMIT busyChanged();
+}
+
+void FilmController::choose() {
+    const Scene scene = m_services.scene(); // the film is of what is seen now, however long the dialog is open
+    const QString folder = keptFolder("filmFolder", QDir::homePath());
+    const QString title = QFileInfo(QString::fromStdString(scene.volume->title)).baseName();
+    FilmOptions offered;
+    offered.views = QStringLiteral("present; ");
+    offered.path = QDir(folder).filePath(title + (hasMovieWriter() ? ".mp4" : "_film"));
+    FilmDialog dialog(offered, m_seen, scene.series->varies() ? scene.series->size() : 0,
+                      scene.session.reference->any(), m_services.window());
+    dialog.setPresentView(presentView(scene));
+    while (dialog.exec() == QDialog::Accepted) {
+        const FilmOptions chosen = dialog.options();
+        if (chosen.path.isEmpty()) continue;
+        FilmTask task{scene};
+        const bool good = m_services.attempt(tr("Cannot save the film"), [&] {
+            std::vector<Camera> views;
+            if (chosen.settings.kind == FilmKind::Views) views = viewsOfText(chosen.views.toStdString(), scene);
+            task.shots = shotsOf(chosen.settings, views, scene);
+            task.width = chosen.size.width();
+            task.height = chosen.size.height();
+            task.framesPerSecond = chosen.settings.framesPerSecond;
+            if (chosen.annotated) task.around = *scene.session.reference;
+            task.path = chosen.path.toStdString();
+            checkFilm(task);
+        });
+        if (!good) continue;
+        const QString first = isMovie(task.path) ? chosen.path : QString::fromStdString(pictureFileOf(task.path, 0));
+        if (QFileInfo::exists(first) &&
+            QMessageBox::question(m_services.window(), tr("Save film"),
+                                  tr("%1 exists. Replace it?").arg(QFileInfo(first).fileName())) != QMessageBox::Yes)
+            continue;
+        keepFolderOf("filmFolder", chosen.path);
+        return save(task);
+    }
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,159 @@
+#include "dialogs/film_dialog.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFileDialog>
+#include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QStandardItemModel>
+
+#include "dialogs/closing_buttons.h"
+#include "render/render_settings.h"
+#include "widgets/layouts.h"
+#include "widgets/named.h"
+
+namespace pellucid::gui {
+namespace {
+
+const Setting& filmSetting(const char* key) { return settingOf(settingsOf<FilmSettings>(), key); }
+
+} // namespace
+
+FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series, bool annotated, QWidget* parent)
+    : QDialog(parent), m_series(series), m_offered(offered.settings),
+      m_kind(named(new QComboBox(this), "filmKind", QString::fromUtf8(filmSetting("kind").help))),
+      m_preset(named(new QComboBox(this), "filmPreset")),
+      m_seconds(numberBox("seconds", &FilmSettings::seconds, "filmSeconds", 2)),
+      m_degrees(numberBox("degrees", &FilmSettings::degrees, "filmDegrees", 0)),
+      m_rate(numberBox("fps", &FilmSettings::framesPerSecond, "filmRate", 2)),
+      m_views(named(new QLineEdit(offered.views, this), "filmViews",
+                    tr("Views with semicolons between: sides such as anterior, left, top; azimuth, elevation and\n"
+                       "magnification such as 30,20,1.5; or present for the view of the window"))),
+      m_path(named(new QLineEdit(offered.path, this), "filmPath",
+                   tr("A name that ends in .mp4 makes a film, for which ffmpeg must be installed; any other is a\n"
+                      "folder, which gets the pictures one by one: picture_00000.png and so on"))),
+      m_width(named(new QSpinBox(this), "filmWidth")), m_height(named(new QSpinBox(this), "filmHeight")),
+      m_annotated(named(new QCheckBox(tr("With &annotations"), this), "filmAnnotated",
+                        tr("What the window shows around the picture: View → Annotations"))),
+      m_summary(named(new QLabel(this), "filmSummary")) {
+    setObjectName("filmDialog");
+    setWindowTitle(tr("Save film"));
+    for (const char* kind : filmSetting("kind").choices) m_kind->addItem(tr(kind));
+    if (series == 0) {
+        auto* const model = qobject_cast<QStandardItemModel*>(m_kind->model());
+        QStandardItem* const item = model->item(static_cast<int>(FilmKind::Series));
+        item->setEnabled(false);
+        item->setToolTip(tr("The data have one frame"));
+    }
+    m_kind->setCurrentIndex(static_cast<int>(offered.settings.kind));
+    m_annotated->setEnabled(annotated);
+    m_annotated->setChecked(annotated);
+    m_path->setMinimumWidth(340);
+    makeSizes(seen);
+    auto* const addView =
+        named(new QPushButton(tr("Add present view"), this), "filmAddView", tr("Append the view that the window has"));
+    auto* const browseButton = new QPushButton(tr("Browse…"), this);
+    for (QPushButton* button : {addView, browseButton}) button->setAutoDefault(false);
+    connect(addView, &QPushButton::clicked, this, &FilmDialog::addPresentView);
+    connect(browseButton, &QPushButton::clicked, this, &FilmDialog::browse);
+
+    auto* const form = inset(new QFormLayout(this), {18, 16, 18, 12});
+    form->setVerticalSpacing(9);
+    form->addRow(tr("&Kind"), m_kind);
+    form->addRow(tr("&Turn"), m_degrees);
+    auto* const views = new QWidget(this);
+    views->setLayout(inset(rowOf({{m_views, 1}, addView}), {}));
+    form->addRow(tr("&Views"), views);
+    form->addRow(tr("&Length"), m_seconds);
+    form->addRow(tr("&Pictures a second"), m_rate);
+    form->addRow(tr("Size"), m_preset);
+    form->addRow(QString(), rowOf({m_width, new QLabel(QStringLiteral("×"), this), m_height, Cell::rest()}));
+    form->addRow(QString(), m_annotated);
+    form->addRow(tr("&File or folder"), rowOf({{m_path, 1}, browseButton}));
+    form->addRow(QString(), m_summary);
+    form->addRow(closingButtons(*this, QDialogButtonBox::Save | QDialogButtonBox::Cancel));
+    m_ofTurntable = {m_degrees, form->labelForField(m_degrees)};
+    m_ofViews = {views, form->labelForField(views)};
+    m_ofLength = {m_seconds, form->labelForField(m_seconds)};
+
+    connect(m_kind, &QComboBox::currentIndexChanged, this, &FilmDialog::follow);
+    for (QDoubleSpinBox* box : {m_seconds, m_rate})
+        connect(box, &QDoubleSpinBox::valueChanged, this, &FilmDialog::follow);
+    follow();
+}
+
+QDoubleSpinBox* FilmDialog::numberBox(const char* key, double FilmSettings::*member, const QString& id, int decimals) {
+    const Setting& setting = filmSetting(key);
+    auto* const box = named(new QDoubleSpinBox(this), id, QString::fromUtf8(setting.help));
+    box->setDecimals(decimals);
+    const double least = std::pow(10.0, -decimals); // where the end itself is not allowed
+    box->setRange(setting.range.holds(setting.range.lo) ? setting.range.lo : least, setting.range.hi);
+    box->setSuffix(QString::fromStdString(setting.unitText()));
+    box->setValue(m_offered.*member);
+    return box;
+}
+
+void FilmDialog::makeSizes(const QSize& seen) {
+    for (QSpinBox* box : {m_width, m_height}) {
+        box->setRange(1, kMostPixels);
+        box->setSuffix(tr(" px"));
+    }
+    const std::pair<QString, QSize> presets[] = {
+        {tr("HD"), {1280, 720}}, {tr("Full HD"), {1920, 1080}}, {tr("As seen"), seen}, {tr("Square"), {720, 720}}};
+    for (const auto& [text, size] : presets)
+        m_preset->addItem(QStringLiteral("%1 (%2 × %3)").arg(text).arg(size.width()).arg(size.height()), size);
+    const auto apply = [this] {
+        const QSize size = m_preset->currentData().toSize();
+        m_width->setValue(size.width());
+        m_height->setValue(size.height());
+    };
+    connect(m_preset, &QComboBox::activated, this, apply);
+    apply();
+}
+
+void FilmDialog::addPresentView() {
+    const QString before = m_views->text().trimmed();
+    m_views->setText(before.isEmpty() || before.endsWith(';') ? before + m_present
+                                                              : QStringLiteral("%1; %2").arg(before, m_present));
+}
+
+void FilmDialog::browse() {
+    const QString chosen =
+        QFileDialog::getSaveFileName(this, tr("Save film"), m_path->text(), tr("Films (*.mp4);;Folder of pictures (*)"),
+                                     nullptr, QFileDialog::DontConfirmOverwrite);
+    if (!chosen.isEmpty()) m_path->setText(chosen);
+}
+
+void FilmDialog::follow() {
+    const FilmSettings now = options().settings;
+    const auto show = [](const QList<QWidget*>& row, bool shown) {
+        for (QWidget* widget : row) widget->setVisible(shown);
+    };
+    show(m_ofTurntable, now.kind == FilmKind::Turntable);
+    show(m_ofViews, now.kind == FilmKind::Views);
+    show(m_ofLength, now.kind != FilmKind::Series);
+    const double pictures =
+        now.kind == FilmKind::Series ? m_series : std::max(1.0, std::round(now.seconds * now.framesPerSecond));
+    m_summary->setText(
+        tr("%L1 pictures, %L2 s").arg(static_cast<int>(pictures)).arg(pictures / now.framesPerSecond, 0, 'f', 1));
+}
+
+FilmOptions FilmDialog::options() const {
+    FilmOptions options;
+    options.settings = {static_cast<FilmKind>(m_kind->currentIndex()), m_seconds->value(), m_rate->value(),
+                        m_degrees->value()};
+    options.views = m_views->text();
+    options.size = {m_width->value(), m_height->value()};
+    options.annotated = m_annotated->isChecked();
+    options.path = m_path->text().trimmed();
+    return options;
+}
+
+} // namespace pellucid::gui
