@@ -214,8 +214,8 @@ TEST_CASE("the worst frame is told with its number, and frames above the toleran
     REQUIRE(above > 0);
     REQUIRE(above < kFrames);
     CHECK(j["above_tolerance"] == above);
-    CHECK(r.err.find(std::to_string(above) + " of 5 frames are not on target") != std::string::npos);
-    CHECK(r.err.find("the farthest is frame 4") != std::string::npos);
+    CHECK(r.err.find(std::to_string(above) + " of 5 frames are not within 3.0 % of the targets") != std::string::npos);
+    CHECK(r.err.find("the farthest, frame 4, is off target by ") != std::string::npos);
     const Outcome text = w.run(kSeries + Words{"--target", "1,1,1", "--no-pictures", "--out", "o"});
     CHECK(text.out.find(", frame 4), flicker") != std::string::npos);
     // Just above is above.
@@ -224,8 +224,8 @@ TEST_CASE("the worst frame is told with its number, and frames above the toleran
         return w.run(kSeries + Words{"--target", "1,1,1", "--tolerance", std::to_string(tolerance), "--no-pictures",
                                      "--out", "o"});
     };
-    CHECK(with(worst * 0.99).err.find("1 of 5 frames is not on target") != std::string::npos);
-    CHECK(with(worst * 1.01).err.find("not on target") == std::string::npos);
+    CHECK(with(worst * 0.99).err.find("1 of 5 frames is not within ") != std::string::npos);
+    CHECK(with(worst * 1.01).err.find("not within") == std::string::npos);
 }
 
 TEST_CASE("a gap in the series is no neighbour for flicker, unless asked for", "[cli][sequence]") {

@@ -166,7 +166,7 @@ TEST_CASE("the table of keys says what the keys do", "[mend]") {
     CHECK(says("R, F", "Fit"));
     CHECK(says("Home", "Reset"));
     CHECK(says("Ctrl+Z", "Undo"));
-    CHECK(says("Ctrl+I", "Influence panel"));
+    CHECK(says("Ctrl+I", "Influence"));
     // Every shortcut of the window is in it.
     for (const QAction* action : w.window.findChildren<QAction*>())
         if (!action->shortcut().isEmpty() && !action->objectName().isEmpty()) {

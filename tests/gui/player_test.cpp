@@ -562,7 +562,7 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     // The worst frame of the static run is told with its number, and how many are not on target.
     const SequenceFigures still = summaryOf(curves.runs[1].frames);
     CHECK(w.child<QLabel>("temporalWords").text().contains(QStringLiteral(", frame %1").arg(still.worst)));
-    CHECK(w.child<QLabel>("temporalWords").text().contains(QStringLiteral("%1 not below 0.03").arg(still.above)));
+    CHECK(w.child<QLabel>("temporalWords").text().contains(QStringLiteral("%1 more than 3.0 %").arg(still.above)));
     // The figures of the frame that is shown are those of the curve.
     w.goTo(4);
     REQUIRE(waitFor([&] { return w.services().results().measuresAreCurrent(); }));
