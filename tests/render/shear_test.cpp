@@ -217,22 +217,24 @@ TEST_CASE("invalid voxels are transparent in the quick picture", "[sheared]") {
 
 TEST_CASE("leaping and the choice of instructions change nothing of the quick picture", "[sheared]") {
     const auto volume = lumps({48, 40, 44});
+    CpuRenderOptions straight;
+    straight.leap = false;
+    const auto renderer = makeCpuRenderer(volume), unleaping = makeCpuRenderer(volume, straight);
+    std::vector<std::unique_ptr<TileRenderer>> others;
+    for (std::size_t kernel = 1; kernel < packetKernels().size(); ++kernel) {
+        CpuRenderOptions options;
+        options.kernel = static_cast<int>(kernel);
+        others.push_back(makeCpuRenderer(volume, options));
+    }
     for (const bool lit : {false, true})
-        for (const Camera& camera : around(volume->geometry(), 6, Projection::Perspective)) {
-            RenderSettings settings = pictureOf(96, 80);
+        for (const Camera& camera : around(volume->geometry(), 4, Projection::Perspective)) {
+            RenderSettings settings = pictureOf(72, 60);
             settings.background = {};
             settings.light.on = lit;
-            CpuRenderOptions straight;
-            straight.leap = false;
-            const Image expected = makeCpuRenderer(volume)->preview(camera, tents(2, 0.3), settings, 1);
-            CHECK(largestAlphaDifference(
-                      expected, makeCpuRenderer(volume, straight)->preview(camera, tents(2, 0.3), settings, 1)) < 1e-4);
-            for (std::size_t kernel = 0; kernel < packetKernels().size(); ++kernel) {
-                CpuRenderOptions options;
-                options.kernel = static_cast<int>(kernel);
-                CHECK(ssim(expected, makeCpuRenderer(volume, options)->preview(camera, tents(2, 0.3), settings, 1)) >
-                      0.9999);
-            }
+            const Image expected = renderer->preview(camera, tents(2, 0.3), settings, 1);
+            CHECK(largestAlphaDifference(expected, unleaping->preview(camera, tents(2, 0.3), settings, 1)) < 1e-4);
+            for (const auto& other : others)
+                CHECK(ssim(expected, other->preview(camera, tents(2, 0.3), settings, 1)) > 0.9999);
         }
 }
 

@@ -11,9 +11,9 @@
 
 namespace pellucid::gui {
 
-/// While the scene changes, pictures are as fine as there is time for, judged by how long the last one took. At rest
-/// the full picture grows from where the mouse points, and then over it the one that would be saved. Nothing is
-/// computed while nothing changes.
+/// While the scene changes, pictures are quick ones (TileRenderer::preview()), as fine as there is time for, judged by
+/// how long the last one took. At rest the full picture grows from where the mouse points, and then over it the one
+/// that would be saved. Nothing is computed while nothing changes.
 class CpuSurface : public QWidget, public ViewSurface {
     Q_OBJECT
 public:
