@@ -10,6 +10,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/round_numbers.h"
 #include "session/session_json.h"
 #include "store/view_edits.h"
 #include "view/slice_pane.h"
