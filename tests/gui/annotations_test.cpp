@@ -71,7 +71,7 @@ TEST_CASE("the annotations can be switched, and undone", "[frame]") {
         store.redo();
     }
     // Axes, legend and title are on now, the others off.
-    CHECK(store.stepCount() == 6);
+    CHECK(store.stepCount() == static_cast<int>(std::size(kAnnotationParts)));
     const QImage others = w.picture();
     CHECK(differences(others, plain, 0, 0, 0.3, 0.1) > 50);  // title
     CHECK(differences(others, plain, 0.7, 0, 1, 0.4) > 200); // legend

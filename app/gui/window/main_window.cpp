@@ -182,6 +182,10 @@ void MainWindow::togglePanel(QDockWidget& dock, const DockScroll& content) {
     const int wanted = content.sizeHint().height(), least = content.leastOfContent().width();
     if (content.height() < wanted * 2 / 3) resizeDocks({&dock}, {wanted}, Qt::Vertical);
     if (content.width() < least) resizeDocks({&dock}, {std::min(least, width() / 2)}, Qt::Horizontal);
+    // A tab that has come back is in front only when the window has laid it out.
+    later(this, [&dock] {
+        if (!dock.isHidden()) dock.raise();
+    });
 }
 
 void MainWindow::addHelpActions() {
