@@ -157,7 +157,7 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
         session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
         session.refine.edit([](RefineSettings& refine) { refine.method = RefineMethod::Exact; });
     });
-    w.child<QDockWidget>("refineDock").raise();
+    w.services().panels().show("refinement");
     w.settle();
     // The femur above the joint, cut open.
     const Vec3 bone = w.document().volume()->geometry().boxCenter() + Vec3(0, 0, 25);

@@ -45,7 +45,7 @@ const char* const kTent = R"(<VoreenData><TransFuncIntensity><Keys>
 TEST_CASE("the window measures by the published definitions", "[window][published]") {
     OpenWindow w;
     Document document = w.document();
-    w.child<QWidget>("settingsDock").raise();
+    w.services().panels().show("settings");
     w.settle();
     auto& profile = w.child<QComboBox>("profileCombo");
     auto& along = w.child<QComboBox>("alongCombo");

@@ -405,8 +405,7 @@ TEST_CASE("fixed points never move", "[refine]") {
 
 TEST_CASE("the exact method can be chosen, and the panel compares", "[refine]") {
     OpenWindow w;
-    w.child<QAction>("refineAction"); // its panel is a tab
-    w.window.findChild<QWidget*>("refineDock")->raise();
+    w.services().panels().show("refinement");
     const TransferFunction tf = w.document().tf();
     const QImage picture = w.picture();
     auto& method = w.child<QComboBox>("refineMethodCombo");

@@ -54,7 +54,7 @@ TEST_CASE("menus are short, and panels stand in four groups", "[room]") {
 
 TEST_CASE("at first only what everybody needs is open", "[room]") {
     OpenWindow w;
-    for (const char* id : {"settings", "refine", "influence", "convergence"}) CHECK(dock(w, id).isHidden());
+    for (const char* id : {"settings", "refinement", "influence", "convergence"}) CHECK(dock(w, id).isHidden());
     for (const char* id : {"tf", "features"}) CHECK_FALSE(dock(w, id).isHidden());
 }
 

@@ -46,7 +46,7 @@ Plot energyPlot(const RefineResult& result, bool isPresent) {
 } // namespace
 
 PanelInfo refinePanel() {
-    return {.id = "refine",
+    return {.id = "refinement",
             .title = QObject::tr("Refinement"),
             .group = PanelGroup::Shares,
             .visible = false,
