@@ -19,9 +19,7 @@ namespace {
 
 constexpr int kRow = 22, kStrip = 6;
 
-QString unitOf(const Scene& scene) {
-    return QLatin1String(lengthUnit(scene.volume->geometry()));
-}
+QString unitOf(const Scene& scene) { return QLatin1String(lengthUnit(scene.volume->geometry())); }
 
 QString nameOf(const ProbeController& probe, int feature) {
     return QString::fromStdString(probe.tf().features[static_cast<std::size_t>(feature)].name);

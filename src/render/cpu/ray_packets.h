@@ -87,11 +87,11 @@ struct PacketScene {
     float cellOfCode = 0; ///< position in the table is ½ + code·this
     float intensityOfCode = 0;
     const std::int32_t* integral =
-        nullptr;                          ///< [cells + 1]: 2·(running integral in `depthUnit`) + (this cell is opaque)
+        nullptr; ///< [cells + 1]: 2·(running integral in `depthUnit`) + (this cell is opaque)
     /// [cells + 1] × 4: the same of τ·rgb, in the same units, without the bit; and that of `integral` with it.
     const std::int32_t* colors = nullptr;
-    float depthUnit = 0;                  ///< optical depth of one unit on a path of d0
-    float lastEntry = 0;                  ///< number of cells
+    float depthUnit = 0; ///< optical depth of one unit on a path of d0
+    float lastEntry = 0; ///< number of cells
     /// A colour per voxel (VoxelColors) in place of `colors` and of those of features; null: none. Of the voxel 0.
     const std::uint32_t* voxelColors = nullptr;
 
