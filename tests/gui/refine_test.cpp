@@ -372,6 +372,7 @@ TEST_CASE("an optimization is not refined, however live refinement is", "[refine
 
 TEST_CASE("fixed points never move", "[refine]") {
     OpenWindow w;
+    w.services().panels().show("refinement");
     w.canvas().selectPoint(1);
     QTest::keyClick(&w.canvas(), Qt::Key_Space); // fixed
     const TransferFunction tf = w.document().tf();

@@ -95,9 +95,9 @@ TEST_CASE("the parameter space of three features is computed, shown and turned",
     CHECK(s.image() != front);
     CHECK(s.document().stepCount() == 0); // turning is no edit, and picks nothing
 
-    s.choose("spaceShown", "W of f1");
+    s.choose("spaceShown", "Attention on f1");
     const QImage w1 = s.image();
-    s.choose("spaceShown", "W of f3");
+    s.choose("spaceShown", "Attention on f3");
     CHECK(s.image() != w1);
 
     // The same point of the space as the engine of the window has it: its present opacities, ½ each, are sample 62.
@@ -163,7 +163,7 @@ TEST_CASE("a heat map is read below the mouse, and a click sets its opacities", 
     move(s.canvas3d(), s.pixelOf(place));
     CHECK(s.reading().contains("f1: opacity 0.2"));
     CHECK(s.reading().contains("f3: opacity 0.7"));
-    CHECK(s.reading().contains("F 0."));
+    CHECK(s.reading().contains("off target by "));
     QTest::mouseClick(&s.canvas3d(), Qt::LeftButton, {}, s.pixelOf(place).toPoint());
     const auto x = featureOpacities(s.document().tf());
     CHECK(x[0] == Approx(0.25).margin(0.01)); // a pixel
