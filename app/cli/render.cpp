@@ -166,7 +166,11 @@ Answer run(const Options& o, Progress& progress) {
     check(o);
     const bool field = o.scene.drawsField();
     if (field || !o.scene.sessionFile) checkSlice(o, field);
-    const Opened opened = resolve(o.scene, progress, {field ? toMeasureAndDrawField() : toView("drawing"), field});
+    const Opened opened = resolve(o.scene, progress,
+                                  {field       ? toMeasureAndDrawField()
+                                   : o.preview ? toPreview("drawing")
+                                               : toView("drawing"),
+                                   field});
     const Scene& scene = opened.scene;
     const EngineChoice engine = scene.session.measure->engine;
     refuse({{o.preview && o.scene.engine.given.has("engine") && engine != EngineChoice::Auto &&

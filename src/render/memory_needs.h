@@ -18,8 +18,9 @@ inline constexpr double kFieldBytesPerVoxel = 8;
 inline constexpr double kMoreByReferenceBytesPerVoxel = 5, kLeanMoreByReferenceBytesPerVoxel = 8;
 /// The published profile's weights are never compact.
 inline constexpr double kMoreByPublishedLeanBytesPerVoxel = 3;
-/// To look at a volume takes its codes, and which are valid, and both again in another order. Lean: codes alone.
-inline constexpr double kViewBytesPerVoxel = 6, kLeanViewBytesPerVoxel = 1;
+/// To look at a volume takes its codes, and which are valid. Quick pictures take both again in another order. Lean:
+/// codes alone.
+inline constexpr double kViewBytesPerVoxel = 3, kPreviewBytesPerVoxel = 6, kLeanViewBytesPerVoxel = 1;
 
 inline MemoryUse toMeasure(std::string doing) {
     return {std::move(doing), kMeasureBytesPerVoxel, kLeanMeasureBytesPerVoxel};
@@ -33,6 +34,10 @@ inline MemoryUse toMeasureAndDrawField() {
     return {"a field of", kMeasureBytesPerVoxel + kFieldBytesPerVoxel, kLeanMeasureBytesPerVoxel + kFieldBytesPerVoxel};
 }
 inline MemoryUse toView(std::string doing) { return {std::move(doing), kViewBytesPerVoxel, kLeanViewBytesPerVoxel}; }
+/// The same with quick pictures.
+inline MemoryUse toPreview(std::string doing) {
+    return {std::move(doing), kPreviewBytesPerVoxel, kLeanViewBytesPerVoxel};
+}
 /// The same by the reference engine.
 inline MemoryUse byReference(MemoryUse use) {
     use.bytesPerVoxel += kMoreByReferenceBytesPerVoxel;

@@ -184,7 +184,7 @@ TEST_CASE("what memory will not do for fails before it starts", "[cli][errors]")
     checkFails(w, Words{"fields", "--out", "d"} + volume, 1, what + "112 MB of memory");
     checkFails(w, Words{"optimize", "--target", "1,1,1"} + volume, 1, "reading and optimizing " + what + "80 MB");
     checkFails(w, {"render", "sample:disks", "--sample-size", "400", "--out", "a.png", "--memory", "0.1"}, 1,
-               "reading and drawing 400 x 400 x 400 voxels needs 512 MB");
+               "reading and drawing 400 x 400 x 400 voxels needs 320 MB");
     checkFails(w, {"info", "sample:disks", "--size", "400", "--memory", "0.1"}, 1, "allow more with --memory");
     for (const char* bad : {"0", "-1", "much", "inf", ""})
         checkFails(w, {"measure", "sample:disks", "--memory", bad}, 2, "--memory");

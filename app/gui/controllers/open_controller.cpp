@@ -72,7 +72,7 @@ OpenController::OpenController(Services& services, SaveController& saving)
           [](const DataChange& change, const JobControl& job) {
               Session session = change.basis.session;
               change.change(session);
-              const MemoryUse then = toView("showing");
+              const MemoryUse then = toPreview("showing");
               Scene scene = resolve(std::move(session), change.basis, then, job);
               if (scene.proposal) { // a variable that has not been drawn yet comes to the front
                   session = scene.session;
@@ -187,7 +187,7 @@ void OpenController::openRecovered(const SessionFile& file, const std::function<
 OpenController::Opened OpenController::load(const Request& request, const JobControl& job) {
     Opened opened;
     SceneInputs inputs = request.inputs;
-    inputs.then = toView("showing");
+    inputs.then = toPreview("showing");
     inputs.start = SceneInputs::Start::Proposed; // the first picture does not wait for opacities
     if (request.tfIsOptional && inputs.tf != kAutomaticTf) {
         try {

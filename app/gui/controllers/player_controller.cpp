@@ -268,7 +268,7 @@ PlayerController::Got PlayerController::read(const Ask& ask, const JobControl& j
         session.frame = ask.frame;
         // What is shown of it is kept with the frame.
         ask.basis.series->show(ask.frame, session.variable().window, quiet);
-        got.scene = resolve(std::move(session), ask.basis, toView("showing"), quiet);
+        got.scene = resolve(std::move(session), ask.basis, toPreview("showing"), quiet);
         prepareToShow(*got.scene, quiet);
     } catch (const Error& error) {
         got.error = error;

@@ -117,7 +117,7 @@ void Actions::build(QMainWindow& window) {
     bar->setIconSize({20, 20});
     m_bar = bar;
     m_window = &window;
-    showWords(hasWords());
+    placeBar();
     refresh();
 }
 
@@ -125,6 +125,11 @@ bool Actions::hasWords() const { return QSettings().value(kWords).toBool(); }
 
 void Actions::showWords(bool shown) {
     QSettings().setValue(kWords, shown);
+    placeBar();
+}
+
+void Actions::placeBar() {
+    const bool shown = hasWords();
     m_bar->setToolButtonStyle(shown ? Qt::ToolButtonTextUnderIcon : Qt::ToolButtonIconOnly);
     // Without words it needs no row of its own: the picture has it.
     if (shown) {

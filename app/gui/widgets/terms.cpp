@@ -32,9 +32,6 @@ void Terms::choose(bool scientific) {
 void Terms::setPublished(bool published) { set(m_published, published); }
 
 QString Terms::attention() const { return areScientific() ? tr("VWS") : tr("Attention"); }
-QString Terms::attentionOf(const QString& feature) const {
-    return areScientific() ? tr("VWS of %1").arg(feature) : tr("attention of %1").arg(feature);
-}
 QString Terms::visibility() const { return areScientific() ? tr("Visibility") : tr("Seen"); }
 QString Terms::pictureSaliency() const { return areScientific() ? tr("2DFS") : tr("In the picture"); }
 QString Terms::distance() const { return areScientific() ? tr("F") : tr("Off target"); }

@@ -19,11 +19,10 @@ public:
     /// Whether a session has the published profile, whose figures have these names alone.
     void setPublished(bool published);
 
-    QString attention() const;                 ///< "Attention", "VWS"
-    QString attentionOf(const QString&) const; ///< "attention of bone", "VWS of bone"
-    QString visibility() const;                ///< "Seen", "Visibility"
-    QString pictureSaliency() const;           ///< "In the picture", "2DFS"
-    QString distance() const;                  ///< "Off target", "F"
+    QString attention() const;       ///< "Attention", "VWS"
+    QString visibility() const;      ///< "Seen", "Visibility"
+    QString pictureSaliency() const; ///< "In the picture", "2DFS"
+    QString distance() const;        ///< "Off target", "F"
     /// Of a distance from the targets, [0,1]: "off target by 2.2 %", "F = 0.0221".
     QString offTarget(double objective) const;
     /// In a column or legend of its own: "2.2 %", "0.0221".

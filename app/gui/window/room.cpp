@@ -1,7 +1,8 @@
 #include "window/room.h"
 
-#include <algorithm>
 #include <initializer_list>
+#include <iterator>
+#include <utility>
 
 #include <QDockWidget>
 #include <QHBoxLayout>
@@ -26,7 +27,7 @@ constexpr int kLayoutVersion = 2; // of what saveState() writes: another one whe
 struct TaskText {
     Task task;
     const char *id, *text, *tip;
-    std::initializer_list<const char*> panels; ///< that are open at first
+    std::initializer_list<const char*> panels; ///< that are open at first; of tabs, those before lie in front
 };
 const TaskText kTasks[] = {
     {Task::Explore,
@@ -103,14 +104,9 @@ void Room::save() {
 void Room::showFirst(Task task) {
     m_window.restoreState(m_first, kLayoutVersion);
     Panels& panels = m_services.panels();
+    for (QDockWidget* dock : m_window.findChildren<QDockWidget*>()) dock->hide();
     const auto wanted = textOf(task).panels;
-    for (QDockWidget* dock : m_window.findChildren<QDockWidget*>()) {
-        const bool shown = std::ranges::any_of(wanted, [&](const char* id) { return panels.dock(id) == dock; });
-        dock->setVisible(shown);
-    }
-    // The first of several tabs lies in front.
-    for (const char* id : wanted)
-        if (std::string_view(id) != "gallery" && std::string_view(id) != "convergence") panels.show(id);
+    for (auto id = std::rbegin(wanted); id != std::rend(wanted); ++id) panels.show(*id); // the first ends up in front
 }
 
 void Room::choose(Task task) {

@@ -1,8 +1,6 @@
 // How the room of the window is shared out: a layout of panels for each task, and a mode with the picture alone.
 #pragma once
 
-#include <array>
-
 #include <QByteArray>
 #include <QMainWindow>
 
