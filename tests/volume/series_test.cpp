@@ -153,7 +153,7 @@ TEST_CASE("a number that is missing between others is a frame that cannot be rea
     const SeriesListing sparse = listSeries(sourceOf(folder.path("e%d.nrrd")));
     CHECK(sparse.frames.size() == 4);
     REQUIRE(sparse.notices.size() == 1);
-    CHECK_THAT(sparse.notices[0], Contains("96 are not there"));
+    CHECK_THAT(sparse.notices[0], Contains("96 frame numbers are missing"));
     for (std::size_t f = 0; f < 4; ++f) CHECK(sparse.frames[f].afterGap == (f == 3));
     CHECK(sparse.fileOf(3) == "e100.nrrd");
     VolumeSource some = sourceOf(folder.path("e%d.nrrd"));

@@ -20,7 +20,7 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRowNames = 100; // at most, pixels
+constexpr int kRowNames = 92; // at most, pixels
 
 /// With so many digits that count, or whole.
 QString signedText(double value, int digits) {
