@@ -212,7 +212,7 @@ std::string methodsPart(const StudyAnalysis& analysis) {
              confidenceText(analysis) + " interval of Student's t."},
         {"Consistency",
          "The absolute differences between both scores of each repeated picture, added up and as a mean."},
-        {"Left out", "Who says that their colour vision is deficient, and who has at least " +
+        {"Left out", "Those who report a colour vision deficiency, and those who have at least " +
                          std::to_string(kLeastPairs) +
                          " repeated pictures and a mean difference above the median of all participants plus 3 · "
                          "1.4826 times the median absolute deviation, at least " +

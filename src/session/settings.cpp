@@ -293,7 +293,7 @@ std::span<const Setting> settingsOf<ComparisonView>() {
         {.key = "same_view",
          .at = member<&C::sameView>,
          .words = "Same &view",
-         .help = "A and B are seen from one place: whoever turns one turns the other.",
+         .help = "A and B are seen from one place: turning one turns the other.",
          .option = "",
          .used = hasB},
         {.key = "same_frame",

@@ -182,11 +182,11 @@ void addRemarks(StudyAnalysis& analysis, std::size_t strangers) {
         const std::size_t stimuli = series.stimuli.size(), without = analysis.points.size() - prediction.points;
         if (stimuli < kLeastStimuli)
             analysis.remarks.push_back("Only " + std::to_string(stimuli) + " scored pictures have a value of " + name +
-                                       ": no correlation can be told of fewer than " + std::to_string(kLeastStimuli) +
+                                       ": there is no correlation of fewer than " + std::to_string(kLeastStimuli) +
                                        ".");
         else if (std::isnan(prediction.of(CorrelationKind::Spearman).value))
             analysis.remarks.push_back("All opinions, or all values of " + name +
-                                       ", are equal: no correlation can be told.");
+                                       ", are equal: there is no correlation.");
         else if (without > 0)
             analysis.remarks.push_back(std::to_string(without) +
                                        (without == 1 ? " point has no value of " : " points have no value of ") + name +

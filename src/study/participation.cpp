@@ -68,7 +68,7 @@ void Participation::answer(std::optional<int> score, const TrialTimes& times) {
         fs::create_directories(participantsFolder(m_folder), ec); // where it fails, opening the file says why
         auto file = std::make_unique<GrowingFile>(participantFile(m_folder, m_participant.id));
         if (file->size() > 0)
-            throw FileError("another window has begun with this participant", file->path(), "close one of the two");
+            throw FileError("another window is already running this participant", file->path(), "close one of the two");
         m_file = std::move(file);
     }
     m_file->append((m_file->size() == 0 ? answersHead() : std::string()) + lineOf(m_participant, answer));

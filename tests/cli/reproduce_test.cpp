@@ -129,6 +129,31 @@ TEST_CASE("an item that fails is told, and the others go on", "[cli][reproduce]"
     CHECK(w.read("thesis/index.html").find("src=\"4.2/brightness.png\"") != std::string::npos);
 }
 
+TEST_CASE("items of chapters 5 and 6 find what the thesis says", "[cli][reproduce]") {
+    const Workshop w;
+    const json searches = itemOf(w.json(Words{"reproduce", "5.6", "--out", "thesis"} + kTiny), "5.6");
+    REQUIRE(searches["statements"].size() == 4);
+    for (const json& statement : searches["statements"]) {
+        INFO(statement);
+        CHECK(statement["holds"] == true);
+    }
+    // Both searches choose the same steps (§5.3.5); the files behind the curves say so, too.
+    for (const std::string name : {"nucleon", "vortex"}) {
+        const json line = json::parse(w.read("thesis/5.6/" + name + "_line.json"));
+        const json parallel = json::parse(w.read("thesis/5.6/" + name + "_parallel.json"));
+        CHECK(line["objective"].back().get<double>() ==
+              Approx(parallel["objective"].back().get<double>()).margin(1e-9));
+        CHECK(line["method"] != parallel["method"]);
+    }
+    const json swapped = itemOf(w.json(Words{"reproduce", "6.5", "--out", "thesis"} + kTiny), "6.5");
+    REQUIRE(swapped["statements"].size() == 2);
+    for (const json& statement : swapped["statements"]) {
+        INFO(statement);
+        CHECK(statement["holds"] == true);
+    }
+    CHECK(swapped["pictures"].size() == 3);
+}
+
 TEST_CASE("reproduce is refused in words", "[cli][reproduce]") {
     const Workshop w;
     const Outcome unknown = w.run({"reproduce", "9.9", "--out", "thesis"});

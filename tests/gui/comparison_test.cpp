@@ -317,8 +317,13 @@ TEST_CASE("B becomes the present state by one step, or changes place with it", "
     w.child<QPushButton>("compareSwap").click();
     CHECK(rangeless(w.document().tf()).points == rangeless(first).points);
     CHECK(rangeless(comparing(w).sceneB()->tf).points == rangeless(second).points);
+    // Undo brings back what B was, too.
     trigger(w, "undoAction");
     CHECK(w.document().tf() == second);
+    CHECK(rangeless(comparing(w).sceneB()->tf).points == rangeless(first).points);
+    trigger(w, "redoAction");
+    CHECK(rangeless(w.document().tf()).points == rangeless(first).points);
+    CHECK(rangeless(comparing(w).sceneB()->tf).points == rangeless(second).points);
 }
 
 TEST_CASE("B may be a preset, a file, a session, an earlier step, a frame or a view", "[comparison]") {

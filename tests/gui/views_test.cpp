@@ -1,13 +1,17 @@
 // The sphere of views: what it shows, a look by pointing at it, a way by a click, and the best view.
 #include "gui_support.h"
 
+#include <QAbstractButton>
 #include <QAction>
+#include <QApplication>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDockWidget>
+#include <QGroupBox>
 #include <QHelpEvent>
 #include <QLabel>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QTableView>
 #include <QToolTip>
 
@@ -17,6 +21,7 @@
 #include "optimize/answer/visibility_words.h"
 #include "render/view_direction.h"
 #include "view/view_globe.h"
+#include "widgets/terms.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -230,6 +235,42 @@ TEST_CASE("figures have plain names, and scientific ones where these are chosen"
     CHECK_FALSE(w.child<QCheckBox>("scientificNamesCheck").isEnabled());
     w.services().undo();
     CHECK(header(FeaturesModel::Vws) == "Attention");
+}
+
+namespace {
+
+/// What a window's widgets show, tooltips apart.
+QStringList textsOf(const QWidget& window) {
+    QStringList all;
+    for (const auto* label : window.findChildren<QLabel*>()) all << label->text();
+    for (const auto* button : window.findChildren<QAbstractButton*>()) all << button->text();
+    for (const auto* action : window.findChildren<QAction*>()) all << action->text();
+    for (const auto* box : window.findChildren<QGroupBox*>()) all << box->title();
+    for (const auto* dock : window.findChildren<QDockWidget*>()) all << dock->windowTitle();
+    for (const auto* choice : window.findChildren<QComboBox*>())
+        for (int i = 0; i < choice->count(); ++i) all << choice->itemText(i);
+    for (const auto* view : window.findChildren<QTableView*>())
+        for (int i = 0; view->model() != nullptr && i < view->model()->columnCount(); ++i)
+            all << view->model()->headerData(i, Qt::Horizontal, Qt::DisplayRole).toString();
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("no widget has a scientific name unless one wants them", "[gui][words]") {
+    OpenGlobe w;
+    for (auto* dock : w.window.findChildren<QDockWidget*>()) dock->show();
+    QApplication::processEvents();
+    static const QRegularExpression scientific("\\bVWS\\b|\\bF = |\\bFV\\b|\\balpha\\b|\\biterations?\\b");
+    const QStringList texts = textsOf(w.window);
+    CHECK(texts.size() > 300);
+    for (const QString& text : texts) {
+        INFO(text.toStdString());
+        CHECK_FALSE((text.contains(scientific)));
+    }
+    terms().choose(true);
+    CHECK(textsOf(w.window).filter(QRegularExpression("\\bVWS\\b")).size() >= 2);
+    terms().choose(false);
 }
 
 TEST_CASE("a globe of an older state is pale until it is made anew", "[gui][views]") {

@@ -252,8 +252,8 @@ void ComparisonController::swap() {
     ComparedState a = present(nameByClock(tr("A until %1")));
     if (old.sameView) a.camera = b.camera;
     if (old.sameFrame) a.frame = b.frame;
-    change([&](ComparisonView& view) { view.b = std::move(a); });
     m_services.store().edit(tr("Swap A and B"), {}, [&](Session& session) {
+        session.comparison.edit([&](ComparisonView& view) { view.b = a; });
         session.setTf(*b.tf);
         if (old.sameLook) return;
         session.display = b.display;
@@ -446,8 +446,7 @@ void ComparisonController::addModes(ActionMenu& menu) {
             });
     };
     add("compareSideBySideAction", tr("&Side by side"), "Ctrl+Alt+S",
-        tr("The present state A on the left, B on the right; whoever turns one turns the other"),
-        CompareMode::SideBySide);
+        tr("The present state A on the left, B on the right; turning one turns the other"), CompareMode::SideBySide);
     add("compareWipeAction", tr("&Wipe"), "Ctrl+Alt+W",
         tr("A and B in one picture, with a border between them that the mouse or the arrow keys move"),
         CompareMode::Wipe);

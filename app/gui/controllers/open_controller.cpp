@@ -122,15 +122,16 @@ void OpenController::addActions() {
     file.add("openTfAction", tr("Open &transfer function…"), "Ctrl+Shift+O", {}, [this] { chooseTf(); },
              {.enabled = [this] { return m_services.isEditable(); }});
     file.separate();
-    file.add("regionAction", tr("Re&gion at full resolution"), {},
-             tr("Of a volume that was too large for memory: the part inside the clipping box, with all its voxels"),
-             [this] { openRegion(); }, {.enabled = [this] {
-                 if (!m_services.isEditable()) return false;
-                 const Clipping& clipping = *m_services.scene().session.clipping;
-                 const auto& excerpt = m_services.scene().volume->excerpt;
-                 return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
-             }});
-    file.add("wholeVolumeAction", tr("W&hole volume"), {}, tr("All the data, as fine as memory allows"),
+    file.add(
+        "regionAction", tr("Re&gion at full resolution"), {},
+        tr("Opens the part inside the clipping box with all its voxels, where the volume was too large for memory"),
+        [this] { openRegion(); }, {.enabled = [this] {
+            if (!m_services.isEditable()) return false;
+            const Clipping& clipping = *m_services.scene().session.clipping;
+            const auto& excerpt = m_services.scene().volume->excerpt;
+            return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
+        }});
+    file.add("wholeVolumeAction", tr("W&hole volume"), {}, tr("Opens all the data, as fine as memory allows"),
              [this] { openWhole(); }, {.enabled = [this] {
                  return m_services.isEditable() && dataVariable(m_services.scene().session).source.region;
              }});
@@ -363,7 +364,8 @@ void OpenController::openPaths(QStringList paths) {
         QString tf;
         QStringList volumes;
         for (const QString& path : paths) {
-            if (isSession(path)) throw UsageError("a session is opened alone", path.toStdString(), "choose one file");
+            if (isSession(path))
+                throw UsageError("a session must be opened by itself", path.toStdString(), "choose one file");
             if (isTf(path)) {
                 if (!tf.isEmpty())
                     throw UsageError("this is a second transfer function", path.toStdString(), "choose one of them");

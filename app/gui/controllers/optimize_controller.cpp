@@ -32,7 +32,7 @@ QString sayOf(const OptimizeResult& result, int restarts) {
     return (result.reason == StopReason::Converged ? QObject::tr("On target: %1.")
             : result.reason == StopReason::NoProgress
                 ? QObject::tr("Not on target: no move came nearer; %1. Looking for the reason…")
-                : QObject::tr("Stopped after as many moves as are allowed: %1."))
+                : QObject::tr("Stopped at the limit of moves: %1."))
         .arg(figures);
 }
 

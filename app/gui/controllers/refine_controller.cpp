@@ -171,7 +171,13 @@ std::optional<RefinePriority> RefineController::priorityOf(const Scene& scene) c
     const RefineSettings& settings = *scene.session.refine;
     RefinePriority priority;
     priority.intensity = settings.intensity;
-    if (settings.hue) return huePriority(scene, scene.tf, *settings.hue);
+    if (settings.hue) {
+        // Where colours are drawn that are not the transfer function's, every voxel is looked at.
+        if (m_hue.hue != settings.hue || m_hue.tf != scene.tf || m_hue.volume.lock() != scene.volume ||
+            m_hue.colors.lock() != scene.colors)
+            m_hue = {*settings.hue, scene.tf, scene.volume, scene.colors, huePriority(scene, scene.tf, *settings.hue)};
+        return m_hue.priority;
+    }
     if (settings.region) {
         const auto* colors = colorsOf(*settings.region);
         if (colors == nullptr) return {};

@@ -104,6 +104,15 @@ private:
         Refinement refinement;
     };
 
+    /// What a hue was last found to be.
+    struct FoundHue {
+        std::optional<double> hue;
+        TransferFunction tf;
+        std::weak_ptr<const Volume> volume;
+        std::weak_ptr<const VoxelColors> colors;
+        RefinePriority priority;
+    };
+
     QString follow(const Scene& before, const Scene& after, Session& session);
     TransferFunction startOfPriority() const;
     const std::vector<RegionColor>* colorsOf(const ImageRegion& region) const;
@@ -130,6 +139,7 @@ private:
     bool m_quiet = false;           ///< what happens is refinement: nothing follows of it
     std::optional<TransferFunction> m_dragStart;
     std::deque<std::pair<ImageRegion, std::vector<RegionColor>>> m_colors; ///< the latest last
+    mutable FoundHue m_hue;
     std::optional<ImageRegion> m_pending;
     Selecting m_selecting = Selecting::Nothing;
     QSize m_viewSize{4, 3};

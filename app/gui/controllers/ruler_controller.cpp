@@ -218,7 +218,7 @@ std::optional<Vec3> RulerController::seenAt(const Camera& camera, const QPointF&
 }
 
 void RulerController::sayNothingSeen() {
-    Q_EMIT m_services.message(tr("Nothing is seen there: click on something that is, or in a slice"));
+    Q_EMIT m_services.message(tr("There is nothing there: click on something you can see, or in a slice"));
 }
 
 // ---- those that are there

@@ -65,7 +65,7 @@ QString beyondText(const Proposal& proposal, const ValueRange& data) {
     const auto plain = [](double v) { return QString::number(v, 'g', 4); };
     const QString ends = below && above ? QObject::tr("%1 and %2").arg(plain(data.lo), plain(data.hi))
                                         : plain(below ? data.lo : data.hi);
-    return QObject::tr("The colours cover values %1; the values of %2 of the voxels lie outside, up to %3.")
+    return QObject::tr("Range clipped to %1 (%2 of the voxels lie outside, up to %3).")
         .arg(rangeText(window), percentText(proposal.outside), ends);
 }
 
@@ -94,7 +94,7 @@ StartController::StartController(Services& services, OpenController& opening)
 void StartController::addActions() {
     m_services.actions().add(
         tr("&Transfer function"), "automaticStartAction", tr("&Automatic start"), {},
-        tr("Takes the window and the features from the data, and finds opacities for this view"),
+        tr("Takes the range of values and the features from the data, and finds opacities for this view"),
         [this] { startAgain(); }, [this] { return m_services.isEditable(); });
 }
 

@@ -57,7 +57,7 @@ StudyController::StudyController(Services& services)
           [this](const Analysis&, const QString& file) {
               Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(file).fileName()));
               if (!QDesktopServices::openUrl(QUrl::fromLocalFile(file)))
-                  m_services.notices().add({tr("The report is in %1: no program is known that shows it").arg(file)});
+                  m_services.notices().add({tr("The report is in %1. No program was found to show it").arg(file)});
               Q_EMIT analyzed(file);
           }) {
     for (JobBase* job : std::initializer_list<JobBase*>{&m_preparing, &m_analyzing}) {
@@ -72,7 +72,7 @@ StudyController::StudyController(Services& services)
 void StudyController::addActions() {
     ActionMenu menu(m_services.actions(), tr("&File/Stud&y"));
     menu.add("studyAddAction", tr("&Add this view to the study…"), {},
-             tr("Keeps what is shown as a picture that people will be asked about"), [this] { chooseView(); },
+             tr("Adds this picture to a study, for people to judge"), [this] { chooseView(); },
              {.enabled = [this] { return m_services.store().hasVolume(); }});
     menu.add("studyEditAction", tr("&Edit study…"), {}, tr("Texts, times, repeats, and the list of stimuli"),
              [this] { edit(); });

@@ -18,12 +18,12 @@ namespace pellucid::gui {
 
 StudyAnalyzeDialog::StudyAnalyzeDialog(const QString& folder, QWidget* parent)
     : QDialog(parent), m_folder(named(new QLineEdit(folder, this), "studyFolder")),
-      m_participants(
-          named(new QListWidget(this), "studyParticipants", tr("Whoever is not checked is left out of the analysis"))),
+      m_participants(named(new QListWidget(this), "studyParticipants",
+                           tr("Participants who are not checked are left out of the analysis"))),
       m_rules(named(new QCheckBox(tr("&Leave out deficient colour vision and inconsistent answers"), this),
                     "studyRules",
-                    tr("Who says that their colour vision is deficient, and who scores repeated pictures\n"
-                       "far more differently than the others do; the report says who and why"))),
+                    tr("Leaves out those who report a colour vision deficiency, and those whose scores of\n"
+                       "repeated pictures differ far more than other people's. The report says who and why"))),
       m_about(wrappedLabel("studyAbout", this)),
       m_buttons(closingButtons(*this, QDialogButtonBox::Ok | QDialogButtonBox::Cancel)) {
     setObjectName("studyAnalyzeDialog");

@@ -1,11 +1,13 @@
 #include "panels/compare_bars.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include <QHelpEvent>
 #include <QPainter>
 
 #include "widgets/controls.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -22,6 +24,15 @@ QString signedPercent(double value) {
 }
 
 } // namespace
+
+QString nameOf(const ComparedFigure& figure) {
+    const std::string_view key = figure.key;
+    if (key == "vws") return terms().attention();
+    if (key == "visibility") return terms().visibility();
+    if (key == "fs") return terms().pictureSaliency();
+    const QString words = QString::fromUtf8(figure.words);
+    return words.left(1).toUpper() + words.mid(1);
+}
 
 CompareBars::CompareBars(QWidget* parent) : QWidget(parent) {
     setObjectName("compareBars");
@@ -135,7 +146,7 @@ bool CompareBars::event(QEvent* event) {
                 const auto value = of ? figure.of(*of) : std::optional<double>();
                 return value ? percent(*value) : QStringLiteral("–");
             };
-            lines << tr("%1: A %2, B %3").arg(figure.words, text(m_pairs[row].a), text(m_pairs[row].b));
+            lines << tr("%1: A %2, B %3").arg(nameOf(figure), text(m_pairs[row].a), text(m_pairs[row].b));
         }
         return lines.join('\n');
     });

@@ -10,6 +10,9 @@
 
 namespace pellucid::gui {
 
+/// What the window calls a figure, see Terms.
+QString nameOf(const ComparedFigure& figure);
+
 /// Per feature the bar of A over that of B, both numbers and their difference. All bars have one scale.
 class CompareBars : public QWidget {
     Q_OBJECT

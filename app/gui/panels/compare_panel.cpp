@@ -15,6 +15,7 @@
 #include "tf/presets.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -70,10 +71,11 @@ ComparePanel::ComparePanel(Services& services, ComparisonController& comparing, 
     form.addRow(m_words);
     form.addRow(m_state);
     form.addRow(m_progress);
-    for (const ComparedFigure& figure : comparedFigures()) {
-        const QString words = QString::fromUtf8(figure.words);
-        m_figure->addItem(words.left(1).toUpper() + words.mid(1));
-    }
+    for (const ComparedFigure& figure : comparedFigures()) m_figure->addItem(nameOf(figure));
+    connect(&terms(), &Terms::changed, this, [this] {
+        for (int i = 0; i < m_figure->count(); ++i)
+            m_figure->setItemText(i, nameOf(comparedFigures()[static_cast<std::size_t>(i)]));
+    });
     form.addRow(tr("&Bars"), m_figure);
     form.addRow(m_bars);
     const CompareActions& actions = comparing.actions();

@@ -234,7 +234,7 @@ void DensitySlider::rest() {
         if (m_job.isRunning())
             tip += tr("\nFinding the opacities of equal shares …");
         else if (m_curve && m_curve->curve.isPoint())
-            tip += tr("\nLocks and bounds leave one picture with these shares");
+            tip += tr("\nLocks and limits leave only one picture with these shares");
         else if (m_curve)
             tip += tr("\nWith these shares: from %1 to %2 opaque, mean over the pixels whose rays meet a feature "
                       "that is drawn")

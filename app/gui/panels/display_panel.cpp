@@ -166,7 +166,7 @@ void DisplayPanel::follow() {
     showNumber(*m_hi, window.hi);
     const ValueRange all = scene.data->range();
     m_wholeRange->setEnabled(window != all);
-    m_note->setText(tr("The data has values from %1 to %2.")
+    m_note->setText(tr("The values of the data run from %1 to %2.")
                         .arg(numberText(all.lo, all.hi - all.lo), numberText(all.hi, all.hi - all.lo)));
     const VolumeSource& source = dataVariable(scene.session).source;
     if (m_component->value() != source.component) m_component->setValue(source.component);

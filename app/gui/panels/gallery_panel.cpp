@@ -240,7 +240,8 @@ void GalleryPanel::keep() {
         return;
     try {
         if (!QDir().mkpath(presetFolder()))
-            throw FileError("the folder of presets cannot be made", presetFolder().toStdString(), "check its rights");
+            throw FileError("cannot create the folder of presets", presetFolder().toStdString(),
+                            "check its permissions");
         TransferFunction tf = m_services.scene().tf;
         for (Feature& f : tf.features) f.id = 0; // that is the session's
         writePreset(tf, title.toStdString(), path.toStdString());
@@ -256,7 +257,7 @@ void GalleryPanel::remove() {
     if (!QFile::moveToTrash(entry->path) && !QFile::remove(entry->path))
         return m_services.showError(
             tr("The preset cannot be removed"),
-            FileError("the file cannot be deleted", entry->path.toStdString(), "check its rights"));
+            FileError("the file cannot be deleted", entry->path.toStdString(), "check its permissions"));
     fill();
 }
 

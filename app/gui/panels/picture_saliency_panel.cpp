@@ -7,6 +7,7 @@
 #include "panels/setting_rows.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
+#include "widgets/terms.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -49,6 +50,7 @@ PictureSaliencyPanel::PictureSaliencyPanel(Services& services, PictureSaliencyCo
     form.addRow(m_save);
     connect(m_save, &QPushButton::clicked, this, [this] { m_saliency.chooseFile(); });
     connect(&m_saliency, &PictureSaliencyController::changed, this, &PictureSaliencyPanel::follow);
+    connect(&terms(), &Terms::changed, this, &PictureSaliencyPanel::follow);
     follow();
 }
 
@@ -56,8 +58,9 @@ QString PictureSaliencyPanel::stateText() const {
     using State = PictureSaliencyController::State;
     switch (m_saliency.state()) {
     case State::Off:
-        return tr("2D feature saliency says how much of what catches the eye in the picture each feature has. VWS says "
-                  "the same of the volume.");
+        return tr("How much of what catches the eye in this picture belongs to each feature. \"%1\" says the same of "
+                  "the volume.")
+            .arg(terms().attention());
     case State::Field:
         return tr("A field is drawn, and has no features. Switch it off to look at the picture of the data.");
     case State::Computing:

@@ -275,7 +275,7 @@ void PlayerPanel::followAdapting() {
     m_adapt.show(all ? m_adapting.smoothing() : static_cast<double>(progress.done) / progress.all,
                  !m_adapting.isStopped(),
                  m_adapting.isStopped() ? tr("Make the transfer functions of the other frames")
-                                        : tr("Make no more transfer functions of other frames for now"));
+                                        : tr("Stop making transfer functions for other frames for now"));
     followMarks();
 }
 
@@ -325,7 +325,7 @@ void PlayerPanel::followSurvey() {
         widget->setVisible(open);
     m_survey.text->setText(tr("%L1 of %L2 frames known").arg(known).arg(count));
     m_survey.show(static_cast<double>(known) / std::max(1, count), m_player.isSurveying(),
-                  m_player.isSurveying() ? tr("Read no frames but those that are shown")
+                  m_player.isSurveying() ? tr("Read only the frames that are shown")
                                          : tr("Read all frames, so that the strip shows their histograms"));
     m_strip->refresh();
     followMarks();

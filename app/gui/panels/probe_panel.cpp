@@ -187,7 +187,7 @@ void ProbePanel::refreshText() {
     m_text->setText(text);
     const bool composite = scene.session.display->mode == RenderMode::Composite;
     m_hint->setVisible(!composite);
-    if (!composite) m_hint->setText(tr("Shares are those of the mode composite."));
+    if (!composite) m_hint->setText(tr("Shares are those of composite mode."));
 }
 
 void ProbePanel::keepInView() {

@@ -133,7 +133,7 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
                     const double greedy = answer.greedyEnergy, exact = answer.exactEnergy;
                     const double less = greedy > 0 ? 100 * (1 - exact / greedy) : 0;
                     m_comparison->setText(
-                        less < 0.01 ? tr("Exact and greedy come to the same at equal total opacity.")
+                        less < 0.01 ? tr("Exact and Greedy give the same result at equal total opacity.")
                                     : tr("At equal total opacity the exact energy is %1 % lower than "
                                          "greedy's: %2, not %3.")
                                           .arg(QString::number(less, 'g', 3), shortNumber(exact), shortNumber(greedy)));
@@ -284,7 +284,7 @@ void RefinePanel::showOutcome() {
     m_figures->setEnabled(now != nullptr);
     if (any == nullptr) {
         m_words->setText(tr("Not refined yet."));
-        m_figures->setText(tr("Even edge weights mean: every part of the curve tells as much as any other."));
+        m_figures->setText(tr("With even edge weights, every part of the curve tells as much as any other."));
         m_plot->hide();
         return;
     }

@@ -59,11 +59,10 @@ std::optional<double> shareFromText(const QString& text) {
 
 TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
     : QWidget(parent), m_store(store), m_results(results),
-      m_box(
-          named(new QLineEdit(this), "targetBox",
-                tr("Share of the saliency from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"))) {
+      m_box(named(new QLineEdit(this), "targetBox",
+                  tr("Share of attention from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"))) {
     setObjectName("targetBars");
-    setAccessibleName(tr("Saliency of the features and their targets"));
+    setAccessibleName(tr("Attention on the features and their targets"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Minimum);

@@ -119,7 +119,7 @@ void StudyWindow::makePlainPages() {
     consent->addButton("consentLeave", tr("I do not wish to take part"), [this] { close(); });
 
     auto* vision = page(Page::Vision, "studyVision", tr("How do you see colours?"));
-    vision->setText(tr("Your answer helps to read the others."));
+    vision->setText(tr("Your answer helps us to interpret the others."));
     for (const VisionAnswer& a : kVisions)
         vision->addButton(a.id, tr(a.text), [this, a] {
             m_participation->setColorVision(a.vision);

@@ -139,7 +139,8 @@ void SessionStore::setFrame(const Scene& shown) {
     show(movedTo(shown, m_scene));
 }
 
-void SessionStore::push(const QString& text, const QString& mergeKey, Scene before) {
+void SessionStore::push(const QString& text, const QString& mergeKey, Scene before,
+                        std::optional<Step::Compared> compared) {
     Scene after = kept(m_scene, before);
     before = kept(std::move(before), m_scene);
     if (withoutGaze(before.session) == withoutGaze(m_scene.session)) return;
@@ -152,7 +153,7 @@ void SessionStore::push(const QString& text, const QString& mergeKey, Scene befo
             --m_index;
         }
     } else {
-        m_steps.push_back({text, mergeKey, std::move(before), std::move(after)});
+        m_steps.push_back({text, mergeKey, std::move(before), std::move(after), std::move(compared)});
         ++m_index;
         if (m_steps.size() > kMostSteps) {
             m_steps.erase(m_steps.begin());
@@ -184,8 +185,11 @@ void SessionStore::edit(const QString& text, const QString& mergeKey, const Chan
     Scene next = changedBy(change, m_scene, basis == nullptr ? m_scene : *basis, name);
     if (next.session == m_scene.session) return;
     Scene before = m_scene;
+    std::optional<Step::Compared> compared;
+    if (const auto& from = before.session.comparison->b, &to = next.session.comparison->b; from != to)
+        compared = {from, to};
     show(std::move(next));
-    push(name, mergeKey, std::move(before));
+    push(name, mergeKey, std::move(before), std::move(compared));
     Q_EMIT historyChanged();
 }
 
@@ -250,7 +254,9 @@ QString SessionStore::redoText() const { return canRedo() ? m_steps[m_index].tex
 void SessionStore::undo() {
     if (isPreviewing()) return cancel(); // a drag under way is what is undone
     if (m_index == 0) return;
-    Scene before = atPresentFrame(m_steps[m_index - 1].before); // may throw: then nothing has happened
+    const Step& step = m_steps[m_index - 1];
+    Scene before = atPresentFrame(step.before); // may throw: then nothing has happened
+    if (step.compared) before.session.comparison.edit([&](ComparisonView& view) { view.b = step.compared->before; });
     --m_index;
     show(std::move(before));
     Q_EMIT historyChanged();
@@ -259,7 +265,9 @@ void SessionStore::undo() {
 void SessionStore::redo() {
     if (isPreviewing()) cancel();
     if (m_index >= m_steps.size()) return;
-    Scene after = atPresentFrame(m_steps[m_index].after);
+    const Step& step = m_steps[m_index];
+    Scene after = atPresentFrame(step.after);
+    if (step.compared) after.session.comparison.edit([&](ComparisonView& view) { view.b = step.compared->after; });
     ++m_index;
     show(std::move(after));
     Q_EMIT historyChanged();

@@ -18,7 +18,8 @@ namespace pellucid::gui {
 /// shows a change of the committed session until commit() or cancel(). An edit, undo or redo during a preview ends that
 /// first: an edit commits it, undo and redo cancel it. The camera has a history of its own, the crosshair of the
 /// slices, what is compared and the frame of a series have none: undo never turns the view, nor goes to another frame.
-/// Steps of a series hold no volumes: they are undone on the frame that is there.
+/// An edit that itself exchanges what is compared with takes it along, so that nothing is lost. Steps of a series hold
+/// no volumes: they are undone on the frame that is there.
 class SessionStore : public QObject {
     Q_OBJECT
 public:
@@ -109,9 +110,14 @@ private:
     struct Step {
         QString text, mergeKey;
         Scene before, after;
+        /// Of a step that exchanges what is compared with: undone and done again with it.
+        struct Compared {
+            std::optional<ComparedState> before, after;
+        };
+        std::optional<Compared> compared = {};
     };
     void show(Scene next);
-    void push(const QString& text, const QString& mergeKey, Scene before);
+    void push(const QString& text, const QString& mergeKey, Scene before, std::optional<Step::Compared> compared = {});
     void forgetOldData();
     void endPreview(const std::function<void(Scene before)>& end);
     void goToCamera(std::size_t index);
