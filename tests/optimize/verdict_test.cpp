@@ -252,6 +252,54 @@ TEST_CASE("a locked feature in front is held responsible, and the view from behi
     CHECK(std::find(v.sentences.begin(), v.sentences.end(), "There, left hides 100 % of right.") != v.sentences.end());
 }
 
+namespace {
+
+/// Says what each search would reach, as a function of the direction of the eye.
+class ToldTools final : public VerdictTools {
+public:
+    explicit ToldTools(double fromElsewhere) : m_fromElsewhere(fromElsewhere) {}
+    const Geometry& geometry() const override { return m_geometry; }
+    OptimizeResult solve(const ReachProblem&, bool, const JobControl&) override { return resultOf(m_fromElsewhere); }
+    std::vector<FeatureSums> sums(const ReachProblem&, const std::vector<std::vector<double>>& candidates,
+                                  const JobControl&) override {
+        FeatureSums sums; // the second feature is out of sight
+        sums.visibility = {1, 0};
+        sums.weighted[0] = sums.weighted[1] = {1, 0};
+        sums.allVisibility = 1;
+        return std::vector<FeatureSums>(candidates.size(), sums);
+    }
+    static OptimizeResult resultOf(double objective) {
+        OptimizeResult result;
+        OptimizeState state;
+        state.objective = objective;
+        state.vws = {1, 0};
+        state.opacity = {0.5, 0.5};
+        result.history = {state};
+        return result;
+    }
+
+private:
+    Geometry m_geometry = geometryOf({8, 8, 8});
+    double m_fromElsewhere;
+};
+
+} // namespace
+
+TEST_CASE("a view that hardly helps is not offered", "[optimize][verdict]") {
+    const ReachProblem p{
+        View(cameraFromView(geometryOf({8, 8, 8}), 0, 0, 1, Projection::Orthographic)), twoTents(), {{}, {}}};
+    const auto offersView = [&](double here, double elsewhere) {
+        ToldTools tools(elsewhere);
+        const Verdict v = explain(tools, p, {0.3, 0.7}, ToldTools::resultOf(here), {});
+        return std::ranges::any_of(v.helps, [](const ReachHelp& h) { return h.kind == ReachHelp::Kind::View; });
+    };
+    CHECK_FALSE(offersView(0.646, 0.622));
+    CHECK_FALSE(offersView(0.4, 0.301)); // more than three quarters are left
+    CHECK(offersView(0.4, 0.299));
+    CHECK(offersView(0.038, 0.029));        // on target, whatever the part
+    CHECK_FALSE(offersView(0.034, 0.0296)); // by less than 0.005
+}
+
 TEST_CASE("occlusion is what a feature's removal uncovers", "[optimize][verdict]") {
     // Two layers of one voxel along y: v = α_0 of the front one, α_1 (1 − α_0) of the one behind.
     FeatureSums as, without0, without1;

@@ -16,6 +16,7 @@ namespace pellucid {
 namespace {
 
 constexpr double kHelps = 0.005;          ///< of F: less is not worth a word
+constexpr double kWorthTurning = 0.75;    ///< of F: a view that leaves more of it is no help
 constexpr double kAtBound = 1e-3;         ///< of opacity, relative
 constexpr double kNothing = 1e-9;         ///< part of all visibility, or of all saliency
 constexpr std::size_t kMostHelps = 3;     ///< of one kind, in words
@@ -219,6 +220,9 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
                 cameraFromView(tools.geometry(), angles.azimuth, angles.elevation, angles.zoom, camera.projection);
             return other;
         };
+        const auto isWorthTurning = [&](double objective) {
+            return helps(objective) && (objective < options.tolerance || objective < kWorthTurning * nearest.objective);
+        };
         std::vector<ReachHelp> promising;
         const std::vector<ViewAngles> around = viewsAround(zoom);
         for (std::size_t k = 0; k < around.size(); ++k) {
@@ -231,7 +235,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
             ReachHelp& help = promising[k];
             if (!helps(help.objective)) break;
             help.objective = objectiveAt(tools.solve(seenFrom(*help.view), false, job));
-            if (!helps(help.objective)) continue;
+            if (!isWorthTurning(help.objective)) continue;
             verdict.helps.push_back(help);
             break;
         }
