@@ -39,8 +39,8 @@ AMBIENT, DIFFUSE, SPECULAR, SHININESS = 0.35, 0.65, 0.25, 24.0
 class GpuPicture(Picture):
     """The volume in a window of VTK's, drawn by OpenGL."""
 
-    def __init__(self, voxels, spacing, type_name, size):
-        super().__init__(voxels, spacing, type_name, 1, size)
+    def __init__(self, voxels, spacing, type_name, size, directions):
+        super().__init__(voxels, spacing, type_name, 1, size, directions)
         source = self.mapper.GetInputConnection(0, 0)
         self.mapper = vtk.vtkGPUVolumeRayCastMapper()
         self.mapper.SetInputConnection(source)
@@ -103,8 +103,8 @@ def main():
         for name in options.volumes:
             file = volume_file(options, name, Path(temporary))
             voxels, spacing, type_name = read_nrrd(file)
-            low, high = pellucid(options.cli, "info", file)["range"]
-            picture = GpuPicture(voxels, spacing, type_name, options.image_size)
+            info = pellucid(options.cli, "info", file)
+            picture = GpuPicture(voxels, spacing, type_name, options.image_size, info["directions"])
             nz, ny, nx = voxels.shape
             print(f"VTK {vtk.vtkVersion.GetVTKVersion()}, {Path(file).name} {nx} x {ny} x {nz}, {options.image_size}² "
                   f"pixels, medians of {options.rounds} orbits of {options.views}\n"
@@ -112,7 +112,7 @@ def main():
             for lit in {"off": [False], "on": [True], "both": [False, True]}[options.light]:
                 picture.light(lit)
                 for peak in (float(p) for p in options.peaks.split(",")):
-                    picture.show(*tents(3, peak, low, high))
+                    picture.show(*tents(3, peak, *info["range"]))
                     ours, theirs = [], []
                     for _ in range(options.rounds):
                         theirs += picture.orbit_times(views)

@@ -36,7 +36,7 @@ NUMPY_TYPES = {"uint8": "u1", "int16": "<i2", "uint16": "<u2", "float": "<f4"}
 
 
 def read_nrrd(path):
-    """Voxels as an array [z][y][x], and the spacing. Axis-aligned files in one piece: raw or gzip, little endian."""
+    """Voxels as an array [z][y][x], and the spacing. Files in one piece: raw or gzip, little endian."""
     data = Path(path).read_bytes()
     head, body = data.split(b"\n\n", 1)
     fields = dict(line.split(": ", 1) for line in head.decode().splitlines() if ": " in line)
@@ -65,7 +65,8 @@ def tents(count, peak, low, high):
 class Picture:
     """The volume in a window of VTK's."""
 
-    def __init__(self, voxels, spacing, type_name, threads, size):
+    def __init__(self, voxels, spacing, type_name, threads, size, directions=((1, 0, 0), (0, 1, 0), (0, 0, 1))):
+        """`directions`: of the axes in the world, unit vectors, as `pellucid-cli info` has them."""
         self.bytes = voxels.tobytes()
         nz, ny, nx = voxels.shape
         importer = vtk.vtkImageImport()
@@ -102,20 +103,27 @@ class Picture:
         self.window.SetMultiSamples(0)
         self.window.AddRenderer(self.renderer)
 
-        # The box reaches half a voxel beyond the outer centres.
-        self.low = [-0.5 * s for s in spacing]
-        self.high = [(n - 0.5) * s for n, s in zip((nx, ny, nz), spacing)]
+        # The box reaches half a voxel beyond the outer centres. It turns about the first of them.
+        low = [-0.5 * s for s in spacing]
+        high = [(n - 0.5) * s for n, s in zip((nx, ny, nz), spacing)]
+        self.size = math.dist(low, high)
+        middle = [(a + b) / 2 for a, b in zip(low, high)]
+        self.center = [sum(directions[axis][row] * middle[axis] for axis in range(3)) for row in range(3)]
+        world = vtk.vtkMatrix4x4()
+        for row in range(3):
+            for axis in range(3):
+                world.SetElement(row, axis, directions[axis][row])
+        self.volume.SetUserMatrix(world)
 
     def look(self, azimuth, elevation):
         """cameraFromView() of src/render/camera.cpp, perspective, zoom 1."""
         az, el = math.radians(azimuth), math.radians(elevation)
         to_eye = (math.sin(az) * math.cos(el), -math.cos(az) * math.cos(el), math.sin(el))
         up = (-math.sin(az) * math.sin(el), math.cos(az) * math.sin(el), math.cos(el))
-        center = [(a + b) / 2 for a, b in zip(self.low, self.high)]
-        distance = 0.5 * math.dist(self.low, self.high) / math.sin(math.radians(FOV_DEGREES) / 2)
+        distance = 0.5 * self.size / math.sin(math.radians(FOV_DEGREES) / 2)
         camera = self.renderer.GetActiveCamera()
-        camera.SetFocalPoint(*center)
-        camera.SetPosition(*(c + distance * t for c, t in zip(center, to_eye)))
+        camera.SetFocalPoint(*self.center)
+        camera.SetPosition(*(c + distance * t for c, t in zip(self.center, to_eye)))
         camera.SetViewUp(*up)
         camera.SetViewAngle(FOV_DEGREES)
         self.renderer.ResetCameraClippingRange()
@@ -225,14 +233,14 @@ def main():
         subprocess.run([options.cli, "generate", options.sample, *size, "--out", file], check=True,
                        stdout=subprocess.DEVNULL)
         voxels, spacing, type_name = read_nrrd(file)
-        low, high = pellucid(options.cli, "info", file)["range"]
-        picture = Picture(voxels, spacing, type_name, options.threads, options.image_size)
+        info = pellucid(options.cli, "info", file)
+        picture = Picture(voxels, spacing, type_name, options.threads, options.image_size, info["directions"])
         nz, ny, nx = voxels.shape
         print(f"VTK {vtk.vtkVersion.GetVTKVersion()}, {options.sample} {nx} x {ny} x {nz}, {options.image_size}² "
               f"pixels, {picture.mapper.GetNumberOfThreads()} threads, medians of {options.rounds} x {options.frames} "
               f"pictures; d0 = {picture.d0:g}")
         for peak in (float(p) for p in options.peaks.split(",")):
-            picture.show(*tents(3, peak, low, high))
+            picture.show(*tents(3, peak, *info["range"]))
             compare(options, file, picture, peak, view)
             if options.pictures:
                 write_pictures(options, file, picture, peak, view)

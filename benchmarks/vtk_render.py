@@ -153,8 +153,8 @@ def main():
         for name in options.volumes:
             file = volume_file(options, name, Path(temporary))
             voxels, spacing, type_name = read_nrrd(file)
-            low, high = pellucid(options.cli, "info", file)["range"]
-            picture = Picture(voxels, spacing, type_name, options.threads, options.image_size)
+            info = pellucid(options.cli, "info", file)
+            picture = Picture(voxels, spacing, type_name, options.threads, options.image_size, info["directions"])
             picture.mapper.SetSampleDistance(picture.d0)
             nz, ny, nx = voxels.shape
             print(f"VTK {vtk_raycast.vtk.vtkVersion.GetVTKVersion()}, {Path(file).name} {nx} x {ny} x {nz}, "
@@ -165,7 +165,7 @@ def main():
             for lit in lights:
                 light(picture, lit)
                 for peak in (float(p) for p in options.peaks.split(",")):
-                    picture.show(*tents(3, peak, low, high))
+                    picture.show(*tents(3, peak, *info["range"]))
                     figures.append(compare(options, file, picture, peak, lit, views, folder) | {"volume": name})
     if options.json:
         Path(options.json).write_text(json.dumps(figures, indent=1) + "\n")

@@ -51,13 +51,13 @@ std::string textOf(const RayProbe& p, const Scene& scene) {
     const std::vector<std::string> names = namesWithEmpty(tf, *scene.histogram);
     if (!p.hit) return "the ray meets nothing of the volume\n";
     const auto percent = [&](double share) { return fixedText(100 * share, 1) + " %"; };
-    Table table({"feature", "of the pixel", "of its alpha"});
+    Table table({"feature", "of the pixel", "of its opacity"});
     const auto ofAlpha = [&](double share) { return p.alpha > 0 ? percent(share / p.alpha) : std::string("-"); };
     for (std::size_t f = 0; f < tf.features.size(); ++f)
         table.add({names[f], percent(p.shares[f]), ofAlpha(p.shares[f])});
     table.add({"(no feature)", percent(p.rest), ofAlpha(p.rest)});
     std::vector<std::pair<std::string, std::string>> lines{
-        {"alpha", fixedText(p.alpha, 4) + ", colour " + hexFromRgb(p.color)},
+        {"opacity", fixedText(p.alpha, 4) + ", colour " + hexFromRgb(p.color)},
         {"path", plainText(glm::length(p.exit - p.entry)) + " world units inside the volume"}};
     if (p.alpha > 0) {
         const auto three = [](const Vec3& v) { return plainText(v.x) + ", " + plainText(v.y) + ", " + plainText(v.z); };

@@ -1,6 +1,7 @@
 #include "tf/proposal.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -38,6 +39,18 @@ struct Evidence {
     std::string text(double value) const { return numberText(value, window.hi - window.lo); }
     std::string text(double lo, double hi) const { return text(lo) + " to " + text(hi); }
 };
+
+/// Of `count` parts of the values, what the one at `index` from below is called: their values stand beside them.
+std::string levelName(std::size_t index, std::size_t count) {
+    static const std::array<std::vector<const char*>, 5> kNames{
+        {{"object"},
+         {"low", "high"},
+         {"low", "middle", "high"},
+         {"low", "lower middle", "upper middle", "high"},
+         {"low", "lower middle", "middle", "upper middle", "high"}}};
+    if (count <= kNames.size()) return kNames[count - 1][index];
+    return "level " + std::to_string(index + 1);
+}
 
 std::string percent(double share) {
     if (share > 0 && share < 0.001) return "under 0.1 %";
@@ -307,16 +320,16 @@ void proposeSigned(Proposal& result, const Evidence& e, double sigma) {
     const double weak = std::min(kSignificant * sigma, kMostOfRange * end), strong = (weak + end) / 2;
     const std::vector<Rgb> colors = divergingColors();
     std::vector<Part> parts;
-    const auto add = [&](double lo, double hi, double mode, std::size_t color, double cover) {
+    const auto add = [&](const char* name, double lo, double hi, double mode, std::size_t color, double cover) {
         lo = std::max(lo, e.window.lo);
         hi = std::min(hi, e.window.hi);
-        if (lo < hi) parts.push_back({{e.text(lo, hi), lo, hi, std::clamp(mode, lo, hi), 0, 0}, colors[color], cover});
+        if (lo < hi) parts.push_back({{name, lo, hi, std::clamp(mode, lo, hi), 0, 0}, colors[color], cover});
     };
     constexpr double kWeak = 0.3, kStrong = 0.9;
-    add(-end, -strong, -end, 0, kStrong);
-    add(-strong, -weak, -strong, 1, kWeak);
-    add(weak, strong, strong, 2, kWeak);
-    add(strong, end, end, 3, kStrong);
+    add("strongly negative", -end, -strong, -end, 0, kStrong);
+    add("negative", -strong, -weak, -strong, 1, kWeak);
+    add("positive", weak, strong, strong, 2, kWeak);
+    add("strongly positive", strong, end, end, 3, kStrong);
     result.background = ValueRange{std::max(-weak, e.window.lo), std::min(weak, e.window.hi)};
     result.why.push_back("values of both signs about 0: blue below, red above; nearer to 0 than " + e.text(weak) +
                          " (two robust standard deviations, or 35 % of the range) is left out");
@@ -398,7 +411,7 @@ void proposeClasses(Proposal& result, const Evidence& e, const JobControl& job) 
     for (std::size_t f = 0; f < found.classes.size(); ++f) {
         const ValueClass& c = found.classes[f];
         const double lo = e.value(c.lo), hi = e.value(c.hi);
-        parts.push_back({{e.text(lo, hi), lo, hi, e.value(c.mode), 0, 0}, colors[f], 0});
+        parts.push_back({{levelName(f, found.classes.size()), lo, hi, e.value(c.mode), 0, 0}, colors[f], 0});
     }
     const std::string count =
         std::to_string(parts.size()) + (parts.size() == 1 ? " class of intensity" : " classes of intensity");

@@ -199,7 +199,8 @@ TEST_CASE("a tiny range about a large value", "[proposal]") {
     REQUIRE(p.features.size() == 2);
     checkBorder(p.features[0].lo - 1, 0.25e-9, 1e-9);
     checkBorder(p.features[1].lo - 1, 0.7e-9, 1e-9);
-    CHECK(p.features[0].name != p.features[1].name);
+    CHECK(p.features[0].name == "low");
+    CHECK(p.features[1].name == "high");
 }
 
 TEST_CASE("constant, empty and binary volumes", "[proposal]") {
@@ -287,6 +288,8 @@ TEST_CASE("values of both signs diverge about 0", "[proposal]") {
     CHECK(p.background->lo == -p.background->hi);
     CHECK(p.tf.opacity(0.5) == 0);
     REQUIRE(p.features.size() == 4);
+    CHECK(p.features[0].name == "strongly negative");
+    CHECK(p.features[2].name == "positive");
     const auto isBlue = [](const Rgb& c) { return c.b > c.r + 0.2; };
     const auto isRed = [](const Rgb& c) { return c.r > c.b + 0.2; };
     CHECK(isBlue(p.tf.features[0].color));
