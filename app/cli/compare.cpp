@@ -159,6 +159,7 @@ Command addCompare(CLI::App& program) {
              "the frame of B, from 0 (default: that of A, or of its session)");
     o->scene.picture.add(*app);
     o->scene.ground.add(*app);
+    o->scene.overlay.add(*app);
     addOutputFile(*app, "--difference", o->difference,
                   "write delta E of each pixel: .exr (floats) or .png (16 bits, white at 100)", checkPlaneSuffix);
     addOutputFile(*app, "--side-by-side", o->sideBySide, "write both as one picture: .png, .tif, .exr or .jpg",

@@ -83,6 +83,7 @@ Command addFilm(CLI::App& program) {
     o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     o->scene.picture.add(*app);
     o->scene.ground.add(*app);
+    o->scene.overlay.add(*app);
     o->scene.coordinates.add(*app);
     o->film.add(*app);
     addValue(*app, "--views", "VIEW;VIEW[;…]", o->views, anyText,

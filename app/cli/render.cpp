@@ -46,6 +46,7 @@ void check(const Options& o) {
     refuse({{field && mode, "a field is always drawn by emission and absorption", "--mode", "leave it out"},
             {slice && ground, "a slice is drawn without the ground", "--ground", "leave it out"},
             {field && ground, "a field is drawn without the ground", "--ground", "leave it out"},
+            {field && o.scene.overlay.path, "a field is drawn without the overlay", "--overlay", "leave it out"},
             {slice && mode, "a slice has no rays, so it has no mode", "--mode", "leave it out"}});
 }
 
@@ -222,6 +223,7 @@ Command addRender(CLI::App& program) {
         ->required();
     o->scene.picture.add(*app);
     o->scene.ground.add(*app);
+    o->scene.overlay.add(*app);
     o->slice.add(*app);
     o->scene.field.add(*app, "Field");
     o->scene.saliency.add(*app);

@@ -51,6 +51,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
     options.ground.applyTo(inputs);
+    options.overlay.applyTo(inputs);
     inputs.session.coordinates.edit([&](CoordinateSettings& c) { options.coordinates.applyTo(c); });
     inputs.session.field.edit([&](FieldView& view) { options.field.applyTo(view); });
     options.engine.requireProfile(inputs, options.saliency);
@@ -65,6 +66,13 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     }
     // Frames are read later, but that no output replaces one of them is known before any work.
     for (const std::string& path : filesOf(inputs.session)) addInputFile(path);
+    if (inputs.session.overlay->isDrawn()) {
+        const EngineChoice engine = inputs.session.measure->engine;
+        if (work.byEngine)
+            notices.emplace_back("figures are of the volume alone: the overlay hides nothing in them");
+        else if (engine == EngineChoice::Gl || engine == EngineChoice::Slices)
+            notices.emplace_back("OpenGL draws no overlay: pictures with it are drawn by the cpu engine");
+    }
     if (!work.needsTf) inputs.start = SceneInputs::Start::Tents;
     return inputs;
 }
@@ -81,6 +89,7 @@ std::vector<std::string> Opened::notices() const {
                           ") is passed over: " + problem);
     if (broken > kMost) all.push_back(std::to_string(broken - kMost) + " more frames are passed over");
     all.insert(all.end(), scene.volume->notices.begin(), scene.volume->notices.end());
+    if (scene.overlay) all.insert(all.end(), scene.overlay->notices.begin(), scene.overlay->notices.end());
     if (scene.volume->excerpt && scene.volume->excerpt->forMemory)
         all.emplace_back("--region X0:X1,Y0:Y1,Z0:Z1 opens a part at full resolution, --downsample 1 all or nothing");
     return all;

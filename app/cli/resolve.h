@@ -8,6 +8,7 @@
 #include "options/clip_options.h"
 #include "options/engine_options.h"
 #include "options/ground_options.h"
+#include "options/overlay_options.h"
 #include "options/picture_options.h"
 #include "options/saliency_options.h"
 #include "options/tf_options.h"
@@ -29,6 +30,7 @@ struct SceneOptions {
     SaliencyInput saliency;
     PictureOptions picture;
     GroundOptions ground;
+    OverlayOptions overlay;
     SettingOptions<CoordinateSettings> coordinates; ///< --coordinates
     SettingOptions<FieldView> field; ///< --field and the options of its look: a field in the place of the data
 

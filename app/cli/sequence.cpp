@@ -566,6 +566,7 @@ Command addSequence(CLI::App& program) {
                   "exit with status 1 if a frame is not on target; everything is written all the same");
     o->scene.picture.add(*app, PictureOptions::Mode::OfSession);
     o->scene.ground.add(*app);
+    o->scene.overlay.add(*app);
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

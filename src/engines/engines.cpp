@@ -55,12 +55,37 @@ std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_pt
     }
 }
 
+namespace {
+
+/// OpenGL, and the cpu renderer where there is an overlay, which OpenGL does not draw.
+class GlElseCpu final : public ImageRenderer {
+public:
+    explicit GlElseCpu(std::shared_ptr<const Volume> volume)
+        : m_volume(std::move(volume)), m_gl(makeGlRenderer(m_volume)) {}
+
+    std::string name() const override { return m_last->name(); }
+    Image render(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
+                 const JobControl& job) override {
+        if (settings.overlay && !m_cpu) m_cpu = makeCpuRenderer(m_volume);
+        m_last = settings.overlay ? m_cpu.get() : m_gl.get();
+        return m_last->render(camera, tf, settings, job);
+    }
+
+private:
+    std::shared_ptr<const Volume> m_volume;
+    std::unique_ptr<ImageRenderer> m_gl, m_cpu;
+    ImageRenderer* m_last = m_gl.get();
+};
+
+} // namespace
+
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {
     if (choice == EngineChoice::Auto && !gpuDrawsFaster()) return makeCpuRenderer(std::move(volume));
     if (choice == EngineChoice::Auto)
-        return gpuElseCpu<ImageRenderer>([&] { return makeGlRenderer(volume); },
+        return gpuElseCpu<ImageRenderer>([&] { return std::make_unique<GlElseCpu>(volume); },
                                          [&] { return makeCpuRenderer(volume); });
-    if (choice == EngineChoice::Gl || choice == EngineChoice::Slices) return makeGlRenderer(std::move(volume));
+    if (choice == EngineChoice::Gl || choice == EngineChoice::Slices)
+        return std::make_unique<GlElseCpu>(std::move(volume));
     return makeCpuRenderer(std::move(volume));
 }
 

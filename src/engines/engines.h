@@ -15,7 +15,8 @@ bool haveGpu();
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality = Quality::Normal);
 /// Auto: on a real GPU whichever of gl and cpu is faster here (renderer_probe.h), measured once; else cpu. The
-/// reference choice draws with the cpu renderer, since no other image is defined; slices are what gl draws.
+/// reference choice draws with the cpu renderer, since no other image is defined; slices are what gl draws. Pictures
+/// with an overlay are the cpu renderer's, whatever is chosen: name() is that of the renderer that drew last.
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
 
 } // namespace pellucid

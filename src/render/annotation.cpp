@@ -9,6 +9,7 @@
 #include "base/round_numbers.h"
 #include "render/mark_maker.h"
 #include "render/named_box.h"
+#include "render/overlay.h"
 #include "render/projected.h"
 #include "render/ruler_marks.h"
 #include "volume/orientation.h"
@@ -162,11 +163,25 @@ private:
     }
 
     void addLegend() {
-        const double lo = m_in.window.lo, span = m_in.window.hi - lo;
+        const TfSampler tf(m_in.tf);
+        const std::vector<double> peaks = featureOpacities(m_in.tf);
+        addLegendOf(m_in.window, true, [&](double s) { return legendRow(tf, peaks, s); });
+        if (!m_in.picture.overlay) return;
+        const Overlay& overlay = *m_in.picture.overlay;
+        const TfSampler over(overlay.tf);
+        addLegendOf(overlay.volume->range(), false, [&](double s) {
+            return LegendRow{over.color(s), over.opacity(s)};
+        });
+    }
+
+    /// At the right, with the names of features; or at the left, where the overlay's is.
+    template <class RowOf>
+    void addLegendOf(const ValueRange& window, bool atRight, const RowOf& rowOf) {
+        const double lo = window.lo, span = window.hi - lo;
         if (!(span > 0) || !std::isfinite(span)) return;
         double bottom = m_height - m_margin;
         for (const PixelBox& t : m_taken)
-            if (t.right > 0.5 * m_width) bottom = std::min(bottom, t.top - m_cap);
+            if (atRight ? t.right > 0.5 * m_width : t.left < 0.5 * m_width) bottom = std::min(bottom, t.top - m_cap);
         const double top = std::round(m_margin + 0.5 * m_cap);
         const double height = std::round(std::min(bottom - top - 0.5 * m_cap, std::max(0.45 * m_height, 12 * m_cap)));
         if (height < 6 * m_cap) return;
@@ -174,12 +189,14 @@ private:
 
         std::vector<Mark> legend;
         const std::vector<double> ticks =
-            axisTicks(lo, m_in.window.hi, std::clamp(static_cast<int>(height / (3.5 * m_cap)), 2, 10));
+            axisTicks(lo, window.hi, std::clamp(static_cast<int>(height / (3.5 * m_cap)), 2, 10));
         double labels = 0;
         for (const double tick : ticks) labels = std::max(labels, m_cap * textWidth(numberText(tick, span)));
-        const double right = std::round(m_width - m_margin - labels - 0.9 * m_cap);
-        const double strip = std::round(0.7 * m_cap), left = right - strip - std::round(2.2 * m_cap);
-        if (left < 0.5 * m_width) return;
+        const double strip = std::round(0.7 * m_cap), curve = std::round(2.2 * m_cap);
+        const double right =
+            atRight ? std::round(m_width - m_margin - labels - 0.9 * m_cap) : std::round(m_margin + strip + curve);
+        const double left = right - strip - curve;
+        if (atRight ? left < 0.5 * m_width : right + 0.9 * m_cap + labels > 0.5 * m_width) return;
         const double line = std::max(m_in.density, 0.09 * m_cap);
         for (const double tick : ticks) {
             const double y = yOf((tick - lo) / span);
@@ -187,30 +204,7 @@ private:
             legend.push_back(textMark(AnnotationPart::Legend, numberText(tick, span), {right + 0.9 * m_cap, y},
                                       Align::Start, Align::Middle, m_cap));
         }
-
-        // From the bottom up, each row a little into the next: no seams.
-        const TfSampler tf(m_in.tf);
-        const std::vector<double> peaks = featureOpacities(m_in.tf);
-        const double rows = std::clamp(height / std::max(1.0, std::floor(m_in.density)), 1.0, 1000.0);
-        std::vector<LegendRow> all;
-        double most = 0;
-        for (int i = 0; i < static_cast<int>(rows); ++i) {
-            all.push_back(legendRow(tf, peaks, (i + 0.5) / std::floor(rows)));
-            most = std::max(most, all.back().opacity);
-        }
-        legend.push_back(boxMark(AnnotationPart::Legend, {left, top, right, top + height}, kDarkInk, 0.55));
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const LegendRow& row = all[i];
-            if (!(row.opacity > 0)) continue;
-            const double n = static_cast<double>(all.size());
-            const double low = yOf(static_cast<double>(i) / n);
-            const double high = std::max(top, yOf(static_cast<double>(i + 1) / n) - (i + 1 < all.size() ? 0.6 : 0));
-            // The strip tells the colour of all that is drawn; the curve, by the square root, how opaque it is.
-            legend.push_back(boxMark(AnnotationPart::Legend, {right - strip, high, right, low}, row.color));
-            const double reach = (right - strip - left) * std::sqrt(row.opacity / most);
-            legend.push_back(
-                boxMark(AnnotationPart::Legend, {right - strip - reach, high, right - strip, low}, row.color, 0.75));
-        }
+        addLegendRows(legend, {left, top, right, top + height}, strip, rowOf);
         Mark border =
             lineMark(AnnotationPart::Legend,
                      {{left, top}, {right, top}, {right, top + height}, {left, top + height}, {left, top}}, line);
@@ -218,8 +212,35 @@ private:
         border.halo = 0;
         legend.push_back(border);
 
-        if (isColored(m_in.picture.mode)) addFeatureNames(left, yOf);
-        if (!place(std::move(legend))) m_names.clear();
+        if (atRight && isColored(m_in.picture.mode)) addFeatureNames(left, yOf);
+        if (!place(std::move(legend)) && atRight) m_names.clear();
+    }
+
+    /// From the bottom up, each row a little into the next: no seams.
+    template <class RowOf>
+    void addLegendRows(std::vector<Mark>& legend, const PixelBox& box, double strip, const RowOf& rowOf) const {
+        const double height = box.bottom - box.top;
+        const auto yOf = [&](double s) { return box.top + (1 - s) * height; };
+        const double rows = std::clamp(height / std::max(1.0, std::floor(m_in.density)), 1.0, 1000.0);
+        std::vector<LegendRow> all;
+        double most = 0;
+        for (int i = 0; i < static_cast<int>(rows); ++i) {
+            all.push_back(rowOf((i + 0.5) / std::floor(rows)));
+            most = std::max(most, all.back().opacity);
+        }
+        legend.push_back(boxMark(AnnotationPart::Legend, box, kDarkInk, 0.55));
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const LegendRow& row = all[i];
+            if (!(row.opacity > 0)) continue;
+            const double n = static_cast<double>(all.size());
+            const double low = yOf(static_cast<double>(i) / n);
+            const double high = std::max(box.top, yOf(static_cast<double>(i + 1) / n) - (i + 1 < all.size() ? 0.6 : 0));
+            // The strip tells the colour of all that is drawn; the curve, by the square root, how opaque it is.
+            legend.push_back(boxMark(AnnotationPart::Legend, {box.right - strip, high, box.right, low}, row.color));
+            const double reach = (box.right - strip - box.left) * std::sqrt(row.opacity / most);
+            legend.push_back(boxMark(AnnotationPart::Legend, {box.right - strip - reach, high, box.right - strip, low},
+                                     row.color, 0.75));
+        }
     }
 
     template <class YOf>

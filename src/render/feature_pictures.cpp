@@ -34,6 +34,7 @@ FeaturePictures featurePictures(ImageRenderer& renderer, const Camera& camera, c
         return renderer.render(camera, what, how, part);
     };
     RenderSettings seen = settings; // over black where nothing else is behind
+    seen.overlay.reset();
     if (!seen.background) seen.background = Rgb{};
     FeaturePictures pictures;
     pictures.whole = draw(tf, seen);

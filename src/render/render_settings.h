@@ -13,6 +13,7 @@
 namespace pellucid {
 
 struct Ground;
+struct Overlay;
 
 inline constexpr double kFinestStep = 1.0 / 256; ///< that pictures are drawn with, d0
 
@@ -66,7 +67,8 @@ struct RenderSettings {
     int onlyFeature = -1; ///< index: draw the voxels of this feature alone; −1: all
     /// In place of the colours of the transfer function, on the volume's grid; null: none.
     std::shared_ptr<const VoxelColors> colors;
-    std::shared_ptr<const Ground> ground; ///< what lies under the volume, opaque; null: nothing
+    std::shared_ptr<const Ground> ground;   ///< what lies under the volume, opaque; null: nothing
+    std::shared_ptr<const Overlay> overlay; ///< a second volume over this one; null: none
 
     void validate() const; ///< throws UsageError
     /// How often a step may be halved until the next time would make it smaller than finestInD0.

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include <glm/vector_relational.hpp>
+
 #include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/overlay.h"
 #include "tf/opacity.h"
 #include "tf/tf_table.h"
 
@@ -141,18 +144,48 @@ struct Window {
 };
 
 /// What lies over the grey at an intensity.
-struct Overlay {
+struct Tint {
     float r, g, b;
     float weight; ///< of the colour, [0, 1]
 };
 
-std::vector<Overlay> overlays(const TransferFunction& tf, double strength) {
+std::vector<Tint> tints(const TransferFunction& tf, double strength) {
     const TfTable table = makeTfTable(tf, kTableSize);
-    std::vector<Overlay> result;
+    std::vector<Tint> result;
     result.reserve(table.rgba.size());
     for (const auto& c : table.rgba)
         result.push_back({c[0], c[1], c[2], static_cast<float>(strength * opacityOfStep(c[3], kSlab))});
     return result;
+}
+
+/// `over` on a pixel of straight colour.
+void lay(const Tint& over, float* pixel) {
+    const float under = pixel[3] * (1 - over.weight), alpha = under + over.weight;
+    if (!(over.weight > 0)) return;
+    const float color[3] = {over.r, over.g, over.b};
+    for (int c = 0; c < 3; ++c) pixel[c] = (under * pixel[c] + over.weight * color[c]) / alpha;
+    pixel[3] = alpha;
+}
+
+/// The second volume over the slice, within the box of the first and its kept part.
+void layOverlay(Image& image, const Geometry& g, const SlicePlane& plane, const SliceSettings& settings) {
+    const Overlay& overlay = *settings.overlay;
+    const std::vector<Tint> tint = tints(overlay.tf, 1);
+    const std::vector<VoxelPlane> cuts = planesInVoxels(settings.clipping, g);
+    const Window intensityOf(overlay.volume->range(), 0);
+    const Vec3 lo = g.voxelBoxMin(), hi = g.voxelBoxMax();
+    parallelFor(static_cast<std::size_t>(plane.height), [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < plane.width; ++x) {
+            const Vec3 voxel = voxelAtPixel(g, plane, {x + 0.5, y + 0.5});
+            if (glm::any(glm::lessThan(voxel, lo)) || glm::any(glm::greaterThan(voxel, hi)) || !keeps(cuts, voxel))
+                continue;
+            const std::optional<double> value =
+                valueAt(*overlay.volume, overlay.geometry.voxelFromWorld(g.worldFromVoxel(voxel)), settings.linear);
+            if (value)
+                lay(tint[static_cast<std::size_t>(intensityOf(*value) * (kTableSize - 1) + 0.5)], image.pixel(x, y));
+        }
+    });
 }
 
 } // namespace
@@ -257,7 +290,7 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
     for (int x = 0; x < plane.width; ++x)
         columns.push_back(around(view.right, voxelAtPixel(g, plane, {x + 0.5, 0.5})[view.right]));
     const std::vector<VoxelPlane> cuts = planesInVoxels(settings.clipping, g);
-    const std::vector<Overlay> overlay = overlays(tf, settings.tfStrength);
+    const std::vector<Tint> tint = tints(tf, settings.tfStrength);
     const auto greyShown = static_cast<float>(std::min(1.0, 2 * (1 - settings.tfStrength)));
     const bool allValid = volume.invalidCount() == 0;
     const Window greyOf(settings.window, 1), intensityOf(volume.range(), 0);
@@ -273,7 +306,7 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
             double value = 0;
             if (!mean(values, allValid, volume.missing(), corners, value)) continue;
             const double grey = greyOf(value), s = intensityOf(value);
-            Overlay over = overlay[static_cast<std::size_t>(s * (kTableSize - 1) + 0.5)];
+            Tint over = tint[static_cast<std::size_t>(s * (kTableSize - 1) + 0.5)];
             if (settings.colors && over.weight > 0) {
                 const Rgb color = meanColor(*settings.colors, values, volume.missing(), corners);
                 over.r = static_cast<float>(color.r);
@@ -297,6 +330,7 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
             },
             volume.samples());
     });
+    if (settings.overlay) layOverlay(image, g, plane, settings);
     return image;
 }
 

@@ -14,6 +14,8 @@
 
 namespace pellucid {
 
+struct Overlay;
+
 using Vec2 = glm::dvec2;
 
 /// Which index axes run to the right and down the picture of a slice, and whether against the picture's direction.
@@ -77,12 +79,13 @@ struct SliceSettings {
     bool linear = true;                        ///< false: each pixel has the value of the nearest voxel
     Clipping clipping;                         ///< what is cut away is transparent
     std::shared_ptr<const VoxelColors> colors; ///< in place of those of the transfer function; null: none
+    std::shared_ptr<const Overlay> overlay;    ///< a second volume, laid over both; null: none
     bool operator==(const SliceSettings&) const = default;
     void validate() const; ///< throws UsageError
 };
 
-/// The slice; transparent beyond the box and where voxels are invalid. Intensities refer to volume.range(), whatever
-/// the window of grey.
+/// The slice; transparent beyond the box and, but for the overlay, where voxels are invalid. Intensities refer to
+/// volume.range(), whatever the window of grey.
 Image renderSlice(const Volume& volume, const TransferFunction& tf, const SlicePlane& plane,
                   const SliceSettings& settings);
 

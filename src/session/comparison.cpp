@@ -66,7 +66,8 @@ ComparedSide comparedSide(const SideInput& input, const Measures& measures, Imag
     FeaturePictures pictures = featurePictures(renderer, p.camera, p.tf, p.settings, job.part(0, 2));
     const FeatureSaliency saliency = featureSaliency(pictures, job.part(1, 2));
     for (std::size_t f = 0; f < features.size(); ++f) side.features[f].fs = saliency.shares.at(f);
-    side.image = std::move(pictures.whole);
+    // Saliency is of the first volume, the picture of both.
+    side.image = p.settings.overlay ? renderer.render(p.camera, p.tf, p.settings, job) : std::move(pictures.whole);
     return side;
 }
 

@@ -83,6 +83,7 @@ std::vector<std::vector<double>> pictureMetric(const Scene& scene, const JobCont
     Scene plain = scene; // no figure depends on how it is displayed
     plain.session.display.set({});
     plain.ground.reset();
+    plain.overlay.reset();
     PictureInput picture = pictureInput(plain, kMetricSize, kMetricSize);
     picture.settings.finestInD0.reset();
     const auto labOf = [&](const TransferFunction& tf) {

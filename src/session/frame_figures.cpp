@@ -29,6 +29,7 @@ FrameFigures figuresOf(const Scene& scene, const TransferFunction* before, Works
     const auto renderer = makeRenderer(scene.session.measure->engine, scene.volume);
     std::array<Image, 2> pictures;
     Scene shown = scene;
+    shown.overlay.reset();
     for (std::size_t i = 0; i < 2; ++i) {
         if (i == 1) shown.tf = *before;
         PictureInput picture = pictureInput(shown, kFlickerSize, kFlickerSize);

@@ -198,6 +198,7 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     resolveColors(scene, basis, finder, job);
     finder.keepKnown();
     resolveGround(scene, basis, job);
+    resolveOverlay(scene, basis, job);
     if (scene.session.camera) {
         scene.camera = *scene.session.camera;
     } else {
@@ -373,6 +374,7 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     s.onlyFeature = scene.onlyFeature();
     s.colors = scene.colors;
     s.ground = scene.ground;
+    s.overlay = scene.overlay;
     return input;
 }
 
@@ -488,6 +490,7 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height) {
     input.settings.light = {};
     input.settings.onlyFeature = -1;
     input.settings.ground.reset();
+    input.settings.overlay.reset();
     return input;
 }
 

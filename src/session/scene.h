@@ -11,6 +11,7 @@
 #include "render/annotation.h"
 #include "render/ground.h"
 #include "render/standard_view.h"
+#include "session/overlay_file.h"
 #include "session/session.h"
 #include "tf/empty_features.h"
 #include "tf/proposal.h"
@@ -36,9 +37,10 @@ struct Scene {
     std::shared_ptr<TimeSeries> series;         ///< of the variable that is drawn, one frame or many; null like `data`
     /// Of the other variables that channels name, and of those that derived ones are made of, by their names.
     std::map<std::string, std::shared_ptr<TimeSeries>> others;
-    std::shared_ptr<const VoxelColors> colors; ///< of HsbMapping, of this frame; null: those of the transfer function
-    double hsbA = 1, hsbB = 1;                 ///< scales that `colors` were made with
-    std::shared_ptr<const Ground> ground;      ///< null: none
+    std::shared_ptr<const VoxelColors> colors;   ///< of HsbMapping, of this frame; null: those of the transfer function
+    double hsbA = 1, hsbB = 1;                   ///< scales that `colors` were made with
+    std::shared_ptr<const Ground> ground;        ///< null: none
+    std::shared_ptr<const SceneOverlay> overlay; ///< null: none
     std::shared_ptr<const Proposal> proposal; ///< where this resolving proposed window and transfer function; else null
 
     /// `tf` for all that has to do with targets: features without a voxel in this frame are hidden, too.

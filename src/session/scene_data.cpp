@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "session/ground_file.h"
+#include "session/overlay_file.h"
 #include "tf/hsb_colors.h"
 
 namespace pellucid {
@@ -30,6 +31,7 @@ std::vector<std::string> filesOf(const Session& session) {
     for (const Variable& variable : *session.variables)
         if (!variable.derivation) add(variable.source);
     add(sourceOf(*session.ground));
+    add(session.overlay->source);
     return files;
 }
 
@@ -239,6 +241,21 @@ void resolveGround(Scene& scene, const Scene& basis, const JobControl& job) {
     } else {
         scene.ground = std::make_shared<const Ground>(readGround(view, scene.volume->geometry(), job));
     }
+}
+
+void resolveOverlay(Scene& scene, const Scene& basis, const JobControl& job) {
+    const OverlayView& view = *scene.session.overlay;
+    if (!view.isDrawn()) return;
+    const Geometry& first = scene.volume->geometry();
+    const bool sameVoxels =
+        basis.overlay && basis.session.overlay->source == view.source && onSameGrid(basis.volume->geometry(), first);
+    if (sameVoxels && view == *basis.session.overlay) {
+        scene.overlay = basis.overlay;
+        return;
+    }
+    SceneOverlay overlay = sameVoxels ? *basis.overlay : readOverlay(view, first, job);
+    if (sameVoxels) dressOverlay(overlay, view);
+    scene.overlay = std::make_shared<const SceneOverlay>(std::move(overlay));
 }
 
 } // namespace pellucid

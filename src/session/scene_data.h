@@ -17,7 +17,8 @@ bool sameOrigin(const Variable& a, const Variable& b);
 /// The same variables in the same order through the same windows, whatever their transfer functions are.
 bool sameData(const std::vector<Variable>& a, const std::vector<Variable>& b);
 
-/// The files that a session's data are in: those of its variables and of its ground, as filesOf(VolumeSource) says.
+/// The files that a session's data are in: those of its variables, of its ground and of its
+/// overlay, as filesOf(VolumeSource) says.
 std::vector<std::string> filesOf(const Session& session);
 
 /// The window of the variable that `series` has the values of: its own, or all values.
@@ -68,5 +69,8 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
 
 /// Scene::ground, likewise.
 void resolveGround(Scene& scene, const Scene& basis, const JobControl& job);
+
+/// Scene::overlay, likewise.
+void resolveOverlay(Scene& scene, const Scene& basis, const JobControl& job);
 
 } // namespace pellucid

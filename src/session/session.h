@@ -128,6 +128,35 @@ struct GroundView {
 template <>
 std::span<const Setting> settingsOf<GroundView>();
 
+/// A second volume over the first (docs/method.md, "The overlay"): where it comes from, and how it is drawn.
+struct OverlayView {
+    enum class Sides {
+        Auto, ///< as the values are
+        One,  ///< from a threshold on
+        Two   ///< both signs, from a threshold away from 0
+    };
+    VolumeSource source; ///< `path` empty: none
+    bool shown = true;
+    Sides sides = Sides::Auto;
+    std::optional<double> threshold;   ///< value up to which nothing is drawn; empty: as the values are
+    std::optional<double> top;         ///< value that the colours reach to; empty: likewise
+    std::string colorMap = kAutomatic; ///< a colour map, or as the values are
+    std::optional<double> opacity;     ///< of a path of d0 of the first volume, at `top`; empty: kUsual, or the curve's
+    /// In the place of threshold, top and colours; its opacities reach to `opacity`. Without a range of its own it is
+    /// over all values.
+    std::optional<TransferFunction> curve;
+
+    static constexpr const char* kAutomatic = "auto";
+    static constexpr double kUsual = 0.1;
+    bool isNone() const { return source.path.empty(); }
+    bool isDrawn() const { return !isNone() && shown; }
+    bool operator==(const OverlayView&) const = default;
+};
+template <>
+std::span<const Setting> settingsOf<OverlayView>();
+template <>
+inline constexpr auto kNamesOf<OverlayView::Sides> = enumNames("sides", "auto", "one", "two");
+
 /// Targets at key frames, halfway between them in between; before the first and after the last, those of these.
 using TargetKeys = std::map<int, std::map<FeatureId, double>>;
 
@@ -339,6 +368,7 @@ struct Session {
     Part<AdaptSettings> adapt;
     Part<HsbMapping> hsb;
     Part<GroundView> ground;
+    Part<OverlayView> overlay;
     bool holdTargets = false;      ///< live: opacities follow camera, colours and settings so that targets are held
     std::optional<double> density; ///< where the density slider was left, [0,1] from faint to strong; empty: untouched
     std::optional<Camera> camera;  ///< empty: the home view of the volume

@@ -350,6 +350,19 @@ GroundView toGround(const JsonValue& j, const std::string& folder, std::vector<s
     return g;
 }
 
+json fromOverlay(const OverlayView& o, const std::string& folder, DataPaths paths) {
+    json j = from(o);
+    if (!o.isNone()) j["source"] = fromSource(o.source, folder, paths);
+    if (o.curve) j["curve"] = fromTf(*o.curve);
+    return j;
+}
+OverlayView toOverlay(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
+    auto o = to<OverlayView>(j);
+    if (j.has("source")) o.source = toSource(j["source"], folder, notices);
+    if (j.has("curve")) o.curve = toTf(j["curve"]);
+    return o;
+}
+
 json fromGoals(const FeatureGoals& goals) {
     json all = json::array();
     for (const auto& [id, g] : goals) {
@@ -700,6 +713,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"adapt", from(*s.adapt)},
            {"hsb", fromHsb(*s.hsb)},
            {"ground", fromGround(*s.ground, folder, paths)},
+           {"overlay", fromOverlay(*s.overlay, folder, paths)},
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
@@ -740,6 +754,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("adapt")) s.adapt = to<AdaptSettings>(j["adapt"]);
     if (j.has("hsb")) s.hsb = toHsb(j["hsb"]);
     if (j.has("ground")) s.ground = toGround(j["ground"], folder, file.notices);
+    if (j.has("overlay")) s.overlay = toOverlay(j["overlay"], folder, file.notices);
     if (j.has("runs")) {
         std::vector<Run> runs;
         int highest = 0;
@@ -753,10 +768,10 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         s.runs = std::move(runs);
     }
     s.extraJson = j.unknownKeys(
-        {"format",  "version",    "variables", "frame",    "features", "hold_targets",     "camera",     "clip",
-         "display", "reference",  "measure",   "optimize", "refine",   "slices",           "field",      "target_keys",
-         "adapt",   "hsb",        "ground",    "runs",     "density",  "picture_saliency", "comparison", "title",
-         "rulers",  "coordinates"});
+        {"format",  "version",     "variables", "frame",    "features", "hold_targets",     "camera",     "clip",
+         "display", "reference",   "measure",   "optimize", "refine",   "slices",           "field",      "target_keys",
+         "adapt",   "hsb",         "ground",    "runs",     "density",  "picture_saliency", "comparison", "title",
+         "rulers",  "coordinates", "overlay"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -1,5 +1,6 @@
 // The settings of a session, each described once.
 #include "session/session.h"
+#include "tf/color_maps.h"
 #include "tf/terrain.h"
 
 namespace pellucid {
@@ -7,6 +8,7 @@ namespace pellucid {
 namespace {
 
 using Open = NumberRange::Open;
+constexpr double kLargestOverlayValue = 1e12;
 
 } // namespace
 
@@ -184,6 +186,67 @@ std::span<const Setting> settingsOf<GroundView>() {
          .words = "Relief",
          .help = "How strongly the slopes of the ground are shaded, by a sun at the upper left of the map.",
          .option = "ground-relief",
+         .used = isDrawn},
+    };
+    return kSettings;
+}
+
+template <>
+std::span<const Setting> settingsOf<OverlayView>() {
+    using O = OverlayView;
+    constexpr auto isDrawn = [](const void* o) { return static_cast<const O*>(o)->isDrawn(); };
+    constexpr auto hasLook = [](const void* o) {
+        const O& overlay = *static_cast<const O*>(o);
+        return overlay.isDrawn() && !overlay.curve;
+    };
+    static constexpr const char* kSides[] = {"As the values are", "From the threshold on", "Both signs"};
+    static const Setting kSettings[] = {
+        {.key = "shown", .at = member<&O::shown>, .words = "&Overlay", .help = "Draw the overlay.", .option = ""},
+        {.key = "sides",
+         .at = member<&O::sides>,
+         .words = "S&ides",
+         .help = "Whether the overlay is drawn from the threshold on, as a dose is, or where it is farther from 0 than "
+                 "the threshold, below 0 and above it, as a map of t-values is.",
+         .choices = kSides,
+         .option = "overlay-sides",
+         .used = hasLook},
+        {.key = "threshold",
+         .at = member<&O::threshold>,
+         .words = "&Threshold",
+         .help = "Value of the overlay up to which nothing of it is drawn; with both signs, its distance from 0. "
+                 "Without a number it is a tenth of the largest value; with both signs, the distance that 5 % of the "
+                 "values other than 0 exceed.",
+         .range = {-kLargestOverlayValue, kLargestOverlayValue},
+         .none = "auto",
+         .option = "overlay-threshold",
+         .used = hasLook},
+        {.key = "top",
+         .at = member<&O::top>,
+         .words = "To&p",
+         .help =
+             "Value of the overlay that its colours reach to; what is beyond it looks the same. Without a number it "
+             "is the largest value; with both signs, the distance from 0 that 0.1 % of the values exceed.",
+         .range = {-kLargestOverlayValue, kLargestOverlayValue},
+         .none = "auto",
+         .option = "overlay-top",
+         .used = hasLook},
+        {.key = "color_map",
+         .at = member<&O::colorMap>,
+         .words = "&Colours",
+         .help = "The colour map of the overlay, or auto: blue-red with both signs, else ember.",
+         .option = "overlay-map",
+         .used = hasLook,
+         .checkText =
+             [](const std::string& text) {
+                 if (text != OverlayView::kAutomatic) (void)colorMapNamed(text);
+             }},
+        {.key = "opacity",
+         .at = member<&O::opacity>,
+         .words = "Op&acity",
+         .help = "The largest opacity of the overlay, of a path of d0 of the volume; half of it at the threshold. "
+                 "Without a number it is 0.1, or that of the overlay's own transfer function.",
+         .none = "auto",
+         .option = "overlay-opacity",
          .used = isDrawn},
     };
     return kSettings;

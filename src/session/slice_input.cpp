@@ -11,6 +11,7 @@ SliceInput sliceInput(const Scene& scene) {
     input.settings.tfStrength = views.tfStrength;
     input.settings.clipping = *scene.session.clipping;
     input.settings.colors = scene.colors;
+    input.settings.overlay = scene.overlay;
     return input;
 }
 

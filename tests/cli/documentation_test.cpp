@@ -110,6 +110,7 @@ std::string manualOf(const std::string& group) {
     if (group == "light") return manualOf<Light>({"silhouettes", "occlusion", "depth_cue", "gradient_opacity"});
     if (group == "field") return manualOf<FieldView>();
     if (group == "ground") return manualOf<GroundView>();
+    if (group == "overlay") return manualOf<OverlayView>();
     if (group == "film") return manualOf<FilmSettings>();
     if (group == "coordinates") return manualOf<CoordinateSettings>();
     if (group == "slice") return manualOf<SliceViews>();

@@ -145,6 +145,7 @@ TEST_CASE("every setting goes through every door, and each refuses in the same w
     walk<DisplaySettings>();
     walk<FieldView>();
     walk<GroundView>();
+    walk<OverlayView>();
     walk<SliceViews>();
     walk<CoordinateSettings>();
     walk<FilmSettings>();

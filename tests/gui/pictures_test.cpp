@@ -2,10 +2,14 @@
 //   PELLUCID_PICTURES=docs/images xvfb-run -a -s "-screen 0 1600x1000x24" build/release/bin/test_gui "[.pictures]"
 #include "gui_support.h"
 
+#include <cmath>
+#include <random>
+
 #include <QAction>
 #include <QCheckBox>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
+#include <QTemporaryDir>
 #include <QToolButton>
 
 #include "engines/engines.h"
@@ -258,4 +262,56 @@ TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
         writeImage(renderer->render(picture.camera, picture.tf, picture.settings, {}), folder + show.sample + ".png");
         if (show.sample == std::string("hurricane")) grab(w, "variables.png");
     }
+}
+
+// A map of t-values that is made up, over a head.
+TEST_CASE("a picture of an overlay", "[.pictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    VolumeSource head;
+    head.path = PELLUCID_SHARED_DIR "/data/real/nifti/ch2.nii.gz";
+    const Geometry map{{40, 48, 40}, Vec3(4), Vec3(-78, -76, -60), Mat3(1), WorldAxes::Patient};
+    struct Peak {
+        Vec3 place; // of the world, mm to the left, the back and the head
+        double t, width;
+    };
+    const Peak peaks[] = {{{44, -14, 28}, 9, 11}, {{-46, -10, 30}, 7, 10}, {{2, 84, 6}, 8, 14}, {{0, -50, 22}, -7, 12}};
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 0.7);
+    Grid<float> values(map.dims);
+    std::size_t i = 0;
+    for (int z = 0; z < map.dims.z; ++z)
+        for (int y = 0; y < map.dims.y; ++y)
+            for (int x = 0; x < map.dims.x; ++x) {
+                double t = noise(random);
+                for (const Peak& peak : peaks) {
+                    const Vec3 away = (map.worldFromVoxel(Vec3(x, y, z)) - peak.place) / peak.width;
+                    t += peak.t * std::exp(-(away.x * away.x + away.y * away.y + away.z * away.z));
+                }
+                values[i++] = static_cast<float>(t);
+            }
+    const QTemporaryDir folder;
+    VolumeSource tMap;
+    tMap.path = folder.filePath("tmap.nrrd").toStdString();
+    writeNrrd(map, values, tMap.path);
+
+    OpenWindow w;
+    w.window.resize(1400, 860);
+    w.open(head);
+    w.settle();
+    w.controllers().overlays.lay(tMap);
+    w.settle();
+    w.opening().editInJob("Look", [](Session& s) {
+        s.overlay.edit([](OverlayView& o) {
+            o.threshold = 3.1;
+            o.opacity = 0.3;
+        });
+        s.clipping.edit([](Clipping& c) { c.hi = {1, 1, 0.55}; });
+    });
+    w.child<QAction>("overlayAction").trigger();
+    w.child<QAction>("layoutFourAction").trigger();
+    w.settle();
+    const Geometry& g = w.services().scene().volume->geometry();
+    w.services().store().setCrosshair(g.voxelFromWorld({44, -14, 28}));
+    w.document().setCamera(cameraFromView(g, 40, 50, 1.6, Projection::Perspective));
+    grab(w, "overlay.png");
 }

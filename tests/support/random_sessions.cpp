@@ -153,6 +153,18 @@ void addSeriesParts(Session& s, Random& random) {
         ground.shown = random.chance(0.5);
         s.ground = ground;
     }
+    if (random.chance(0.5)) {
+        OverlayView overlay;
+        overlay.source.path = "sample:disks";
+        overlay.shown = random.chance(0.5);
+        overlay.sides = static_cast<OverlayView::Sides>(random.below(3));
+        if (random.chance(0.5)) overlay.threshold = oddNumber(random, -5, 5);
+        if (random.chance(0.5)) overlay.top = oddNumber(random, 5, 10);
+        if (random.chance(0.5)) overlay.opacity = oddNumber(random, 0, 1);
+        if (random.chance(0.5)) overlay.colorMap = "sand";
+        if (random.chance(0.3)) overlay.curve = tents(2, 0.3);
+        s.overlay = overlay;
+    }
 }
 
 FeatureGoals randomGoals(Random& random, int features) {

@@ -28,6 +28,7 @@ void addEditActions(Services& services) {
 Controllers::Controllers(Services& all) : services(all) {
     // The menus stand in the order in which their first actions come.
     opening.addActions();
+    overlays.addActions();
     saving.addActions();
     films.addActions();
     studies.addActions();

@@ -9,6 +9,7 @@
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
+#include "controllers/overlay_controller.h"
 #include "controllers/picture_saliency_controller.h"
 #include "controllers/player_controller.h"
 #include "controllers/probe_controller.h"
@@ -38,6 +39,7 @@ struct Controllers {
     SaveController saving{services, fields, pictureSaliency, rulers};
     FilmController films{services};
     OpenController opening{services, saving};
+    OverlayController overlays{services, opening};
     StartController starting{services, opening};
     RecoveryController recovery{services, opening, saving};
     PlayerController player{services, opening}; ///< frames of a series

@@ -54,7 +54,7 @@ public:
     /// wait for it.
     void editData(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
     /// The same where no other data is needed, but what follows of it takes time: variables that are read, colours that
-    /// are made of several of them, a ground.
+    /// are made of several of them, a ground, an overlay.
     void editInJob(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
 
     bool isBusy() const { return m_open.isRunning() || m_data.isRunning(); }

@@ -403,7 +403,8 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
     // Another mapping may do without the frame of another variable that could not be read.
     const bool others = !before.session.hsb->isKeptBy(*after.session.hsb) ||
                         !sameData(*before.session.variables, *after.session.variables) ||
-                        !before.session.ground.isSame(after.session.ground);
+                        !before.session.ground.isSame(after.session.ground) ||
+                        !before.session.overlay.isSame(after.session.overlay);
     if (others && after.series)
         std::erase_if(m_broken,
                       [&](const auto& broken) { return after.series->summary(broken.first).problem.empty(); });

@@ -4,7 +4,6 @@
 
 #include <QLineEdit>
 #include <QLocale>
-#include <QPainter>
 #include <QPushButton>
 
 #include "controllers/controllers.h"
@@ -26,14 +25,6 @@ const std::array kTips{
     QT_TR_NOOP("How much the saturation of each voxel differs from its surroundings, 0 to 1.34"),
     QT_TR_NOOP("Both saliencies, each with its weight u1 or u2"),
     QT_TR_NOOP("Each voxel's share of the visibility-weighted saliency: those of a feature sum to its VWS")};
-
-QIcon iconOf(const ColorMap& map) {
-    QPixmap pixmap(48, 12);
-    QPainter painter(&pixmap);
-    for (int x = 0; x < pixmap.width(); ++x)
-        painter.fillRect(x, 0, 1, pixmap.height(), colorFromRgb(map.colorAt((x + 0.5) / pixmap.width())));
-    return pixmap;
-}
 
 class FieldsPanel : public QWidget {
 public:
@@ -111,13 +102,7 @@ void FieldsPanel::fillLists() {
         const auto i = static_cast<std::size_t>(kind);
         addItem(*m_kind, QString::fromLatin1(title(kind)), static_cast<int>(i), tr(kTips[i]));
     }
-    m_colorMap->setIconSize({48, 12});
-    for (const ColorMap& map : colorMaps()) {
-        if (map.kind == ColorMap::Kind::Categorical) continue;
-        const QString name = QString::fromStdString(map.name);
-        addItem(*m_colorMap, name, name, QString::fromStdString(map.title));
-        m_colorMap->setItemIcon(m_colorMap->count() - 1, iconOf(map));
-    }
+    addColorMaps(*m_colorMap);
     addItem(*m_colorMap, tr("of the feature"), QString::fromLatin1(kFeatureColorMap),
             tr("Black over the colour of the chosen feature to white; of all features, the default map"));
 }

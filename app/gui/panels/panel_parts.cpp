@@ -2,14 +2,28 @@
 
 #include <QComboBox>
 #include <QDir>
+#include <QPainter>
 
 #include "base/atomic_file.h"
 #include "dialogs/ask_file.h"
+#include "tf/color_maps.h"
 #include "widgets/controls.h"
 #include "widgets/plot_view.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
+
+namespace {
+
+QIcon iconOf(const ColorMap& map) {
+    QPixmap pixmap(48, 12);
+    QPainter painter(&pixmap);
+    for (int x = 0; x < pixmap.width(); ++x)
+        painter.fillRect(x, 0, 1, pixmap.height(), colorFromRgb(map.colorAt((x + 0.5) / pixmap.width())));
+    return pixmap;
+}
+
+} // namespace
 
 void fillFeatures(QComboBox& box, const Scene& scene, const QString& all, int present) {
     box.clear();
@@ -18,6 +32,16 @@ void fillFeatures(QComboBox& box, const Scene& scene, const QString& all, int pr
         box.addItem(swatchOf(colorFromRgb(f.color), 12, 12), QString::fromStdString(f.name),
                     QVariant::fromValue<qulonglong>(f.id));
     box.setCurrentIndex(present + 1);
+}
+
+void addColorMaps(QComboBox& box) {
+    box.setIconSize({48, 12});
+    for (const ColorMap& map : colorMaps()) {
+        if (map.kind == ColorMap::Kind::Categorical) continue;
+        const QString name = QString::fromStdString(map.name);
+        addItem(box, name, name, QString::fromStdString(map.title));
+        box.setItemIcon(box.count() - 1, iconOf(map));
+    }
 }
 
 FeatureId chosenFeature(const QComboBox& box) { return static_cast<FeatureId>(box.currentData().toULongLong()); }

@@ -34,6 +34,9 @@ void fillFeatures(QComboBox& box, const Scene& scene, const QString& all, int pr
 /// 0: all.
 FeatureId chosenFeature(const QComboBox& box);
 
+/// A row for each colour map that goes over values, whose data is its name.
+void addColorMaps(QComboBox& box);
+
 /// Where curves are to go, or empty. `suffix`, "csv", "png" or "svg": the only one offered; empty: any of them.
 QString askCurveFile(Services& services, const QString& title, const QString& name, const QString& suffix = {});
 /// Writes the table or the plots, by the suffix of `path`. Errors are shown.

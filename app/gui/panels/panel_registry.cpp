@@ -5,8 +5,8 @@ namespace pellucid::gui {
 /// A function of a panel's own file, which says what the panel is.
 using Panel = PanelInfo();
 Panel transferFunctionPanel, playerPanel, featuresPanel, refinePanel, influencePanel, convergencePanel, displayPanel,
-    lightPanel, clipPanel, fieldsPanel, galleryPanel, viewsPanel, settingsPanel, spacePanel, variablesPanel,
-    temporalPanel, pictureSaliencyPanel, comparePanel, measuresPanel;
+    lightPanel, clipPanel, overlayPanel, fieldsPanel, galleryPanel, viewsPanel, settingsPanel, spacePanel,
+    variablesPanel, temporalPanel, pictureSaliencyPanel, comparePanel, measuresPanel;
 
 std::vector<PanelInfo> panelRegistry() {
     return {transferFunctionPanel(),
@@ -18,6 +18,7 @@ std::vector<PanelInfo> panelRegistry() {
             displayPanel(),
             lightPanel(),
             clipPanel(),
+            overlayPanel(),
             fieldsPanel(),
             measuresPanel(),
             pictureSaliencyPanel(),

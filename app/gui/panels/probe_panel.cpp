@@ -31,7 +31,7 @@ class ProbeLayer : public OverlayLayer {
 public:
     explicit ProbeLayer(ProbeController& probe) : m_probe(probe) {}
 
-    void paint(QPainter& painter, const OverlayView& view) override {
+    void paint(QPainter& painter, const LayerView& view) override {
         if (!m_probe.isActive()) return;
         const auto at = pixelOf({view.scene.camera, std::max(1, static_cast<int>(view.size.width())),
                                  std::max(1, static_cast<int>(view.size.height()))},

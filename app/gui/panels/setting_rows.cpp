@@ -46,7 +46,7 @@ void setMaybe(const Setting& setting, void* settings, const std::optional<T>& wa
 std::pair<double, double> shownEnds(const Setting& setting, const RowLook& look) {
     using Open = NumberRange::Open;
     const double smallest = std::pow(10.0, -look.decimals);
-    return {setting.range.lo * look.factor + (setting.range.open == Open::Low ? smallest : 0),
+    return {std::max(setting.range.lo * look.factor, -1e9) + (setting.range.open == Open::Low ? smallest : 0),
             std::min(setting.range.hi * look.factor, 1e9) - (setting.range.open == Open::High ? smallest : 0)};
 }
 

@@ -107,6 +107,10 @@ Scene SessionStore::atPresentFrame(Scene scene) const {
         basis.session.ground = scene.session.ground;
         basis.ground = scene.ground;
     }
+    if (scene.overlay) {
+        basis.session.overlay = scene.session.overlay;
+        basis.overlay = scene.overlay;
+    }
     Scene next = atFrame(scene.session, m_scene.session.frame, std::move(basis));
     prepareToShow(next);
     return next;
@@ -118,6 +122,8 @@ Scene SessionStore::movedTo(const Scene& shown, const Scene& from) {
     Scene basis = shown;
     basis.session.ground = from.session.ground; // one ground lies under all frames
     basis.ground = from.ground;
+    basis.session.overlay = from.session.overlay; // and one overlay over them
+    basis.overlay = from.overlay;
     return atFrame(std::move(session), shown.session.frame, std::move(basis));
 }
 
@@ -170,7 +176,8 @@ void SessionStore::forgetOldData() {
     std::size_t first = m_steps.size();
     while (first > 0) {
         for (const Scene* scene : {&m_steps[first - 1].before, &m_steps[first - 1].after})
-            if (scene->data) volumes.insert(scene->data.get());
+            for (const auto& volume : {scene->data, scene->overlay ? scene->overlay->volume : nullptr})
+                if (volume) volumes.insert(volume.get());
         if (volumes.size() > kMostData) break;
         --first;
     }

@@ -13,7 +13,7 @@
 
 namespace pellucid::gui {
 
-void AnnotationLayer::paint(QPainter& painter, const OverlayView& view) {
+void AnnotationLayer::paint(QPainter& painter, const LayerView& view) {
     const AnnotationChoice& show = *view.scene.session.reference;
     const QSize size = view.size.toSize();
     if (size.isEmpty()) return;
@@ -30,7 +30,7 @@ void AnnotationLayer::paint(QPainter& painter, const OverlayView& view) {
     for (const Mark& mark : annotationMarks(input)) drawMark(painter, mark);
 }
 
-void SliceLayer::paint(QPainter& painter, const OverlayView& view) {
+void SliceLayer::paint(QPainter& painter, const LayerView& view) {
     if (view.scene.session.slices->layout == SliceViews::Layout::Volume) return;
     const Geometry& geometry = view.scene.volume->geometry();
     const PictureView picture = view.picture();

@@ -12,7 +12,7 @@ class AnnotationLayer : public OverlayLayer {
 public:
     /// `fields` outlives this; null: the view shows the data.
     explicit AnnotationLayer(const FieldController* fields = nullptr) : m_fields(fields) {}
-    void paint(QPainter& painter, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
 
 private:
     const FieldController* m_fields;
@@ -21,7 +21,7 @@ private:
 /// The outlines of the slices and the crosshair, while slices are shown; takes no clicks.
 class SliceLayer : public OverlayLayer {
 public:
-    void paint(QPainter& painter, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
 };
 
 } // namespace pellucid::gui

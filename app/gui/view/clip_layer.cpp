@@ -85,7 +85,7 @@ void ClipLayer::setShown(bool shown) {
     m_overlay.update();
 }
 
-std::vector<ClipLayer::Placed> ClipLayer::handles(const OverlayView& view) const {
+std::vector<ClipLayer::Placed> ClipLayer::handles(const LayerView& view) const {
     const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     const Clipping& clipping = *view.scene.session.clipping;
@@ -105,7 +105,7 @@ std::vector<ClipLayer::Placed> ClipLayer::handles(const OverlayView& view) const
     return placed;
 }
 
-ClipLayer::Handle ClipLayer::handleAt(const QPointF& point, const OverlayView& view) const {
+ClipLayer::Handle ClipLayer::handleAt(const QPointF& point, const LayerView& view) const {
     if (!m_shown || m_services.isReadOnly()) return {};
     const std::vector<Placed> placed = handles(view);
     for (auto h = placed.rbegin(); h != placed.rend(); ++h)
@@ -122,7 +122,7 @@ ClipLayer::Handle ClipLayer::handleAt(const QPointF& point, const OverlayView& v
     return {};
 }
 
-void ClipLayer::paint(QPainter& painter, const OverlayView& view) {
+void ClipLayer::paint(QPainter& painter, const LayerView& view) {
     if (!m_shown) return;
     paintBox(painter, view);
     paintPlanes(painter, view);
@@ -146,7 +146,7 @@ void ClipLayer::paint(QPainter& painter, const OverlayView& view) {
     painter.drawPolygon(outlineOf(view.picture(), corners));
 }
 
-void ClipLayer::paintBox(QPainter& painter, const OverlayView& view) const {
+void ClipLayer::paintBox(QPainter& painter, const LayerView& view) const {
     const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     const Clipping& part = *view.scene.session.clipping;
@@ -168,7 +168,7 @@ void ClipLayer::paintBox(QPainter& painter, const OverlayView& view) const {
             }
 }
 
-void ClipLayer::paintPlanes(QPainter& painter, const OverlayView& view) const {
+void ClipLayer::paintPlanes(QPainter& painter, const LayerView& view) const {
     const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     for (const ClipPlane& plane : view.scene.session.clipping->planes) {
@@ -184,7 +184,7 @@ void ClipLayer::paintPlanes(QPainter& painter, const OverlayView& view) const {
     }
 }
 
-Qt::CursorShape ClipLayer::cursorAt(const QPointF& point, const OverlayView& view) {
+Qt::CursorShape ClipLayer::cursorAt(const QPointF& point, const LayerView& view) {
     const Handle handle = handleAt(point, view);
     if (!(handle == m_hovered)) {
         m_hovered = handle;
@@ -193,7 +193,7 @@ Qt::CursorShape ClipLayer::cursorAt(const QPointF& point, const OverlayView& vie
     return handle.kind == Kind::None ? Qt::ArrowCursor : Qt::OpenHandCursor;
 }
 
-bool ClipLayer::press(const QPointF& point, Qt::KeyboardModifiers, const OverlayView& view) {
+bool ClipLayer::press(const QPointF& point, Qt::KeyboardModifiers, const LayerView& view) {
     const Handle handle = handleAt(point, view);
     if (handle.kind == Kind::None) return false;
     m_services.store().commit();
@@ -203,7 +203,7 @@ bool ClipLayer::press(const QPointF& point, Qt::KeyboardModifiers, const Overlay
     return true;
 }
 
-Clipping ClipLayer::dragged(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) const {
+Clipping ClipLayer::dragged(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) const {
     const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     const PixelPoint from{m_from.x(), m_from.y()}, to{point.x(), point.y()};
@@ -228,7 +228,7 @@ Clipping ClipLayer::dragged(const QPointF& point, Qt::KeyboardModifiers keys, co
     return clipping;
 }
 
-void ClipLayer::drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
+void ClipLayer::drag(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) {
     if (m_services.isReadOnly()) return;
     const QString text = m_held.kind == Kind::Face ? QObject::tr("Clip") : QObject::tr("Clip plane");
     m_services.store().preview(

@@ -17,10 +17,10 @@ public:
 
     void setShown(bool shown);
 
-    void paint(QPainter& painter, const OverlayView& view) override;
-    Qt::CursorShape cursorAt(const QPointF& point, const OverlayView& view) override;
-    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
-    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
+    Qt::CursorShape cursorAt(const QPointF& point, const LayerView& view) override;
+    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
+    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
     void end(bool kept) override;
 
 private:
@@ -36,11 +36,11 @@ private:
         QPointF at;
         double depth;
     };
-    std::vector<Placed> handles(const OverlayView& view) const; ///< the nearest to the viewer last
-    Handle handleAt(const QPointF& point, const OverlayView& view) const;
-    void paintBox(QPainter& painter, const OverlayView& view) const;
-    void paintPlanes(QPainter& painter, const OverlayView& view) const;
-    Clipping dragged(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) const;
+    std::vector<Placed> handles(const LayerView& view) const; ///< the nearest to the viewer last
+    Handle handleAt(const QPointF& point, const LayerView& view) const;
+    void paintBox(QPainter& painter, const LayerView& view) const;
+    void paintPlanes(QPainter& painter, const LayerView& view) const;
+    Clipping dragged(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) const;
 
     Services& m_services;
     QWidget& m_overlay;

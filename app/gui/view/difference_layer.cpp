@@ -52,7 +52,7 @@ DifferenceLayer::DifferenceLayer(ComparisonController& comparing, ViewOverlay& o
         QObject::connect(&comparing, signal, &overlay, [&overlay] { overlay.update(); });
 }
 
-void DifferenceLayer::paint(QPainter& painter, const OverlayView& view) {
+void DifferenceLayer::paint(QPainter& painter, const LayerView& view) {
     if (!m_comparing.isShown()) return;
     const ComparisonView& shown = m_comparing.view();
     QRectF area(QPointF(), view.size);
@@ -63,7 +63,7 @@ void DifferenceLayer::paint(QPainter& painter, const OverlayView& view) {
     paintSideName(painter, area, QObject::tr("Difference to %1").arg(name));
 }
 
-void DifferenceLayer::paintMap(QPainter& painter, const OverlayView& view) {
+void DifferenceLayer::paintMap(QPainter& painter, const LayerView& view) {
     const Comparison* const comparison = m_comparing.comparison();
     if (comparison == nullptr) return;
     const double strength = m_comparing.view().strength;

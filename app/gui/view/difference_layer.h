@@ -14,10 +14,10 @@ class DifferenceLayer : public OverlayLayer {
 public:
     /// Both outlive this.
     DifferenceLayer(ComparisonController& comparing, ViewOverlay& overlay);
-    void paint(QPainter& painter, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
 
 private:
-    void paintMap(QPainter& painter, const OverlayView& view);
+    void paintMap(QPainter& painter, const LayerView& view);
     void paintLegend(QPainter& painter, const QSizeF& size, bool current) const;
 
     ComparisonController& m_comparing;

@@ -16,7 +16,7 @@ constexpr double kRadiusOfView = 0.25; // of the ball that is turned, heights of
 
 } // namespace
 
-void LightLayer::paint(QPainter& painter, const OverlayView& view) {
+void LightLayer::paint(QPainter& painter, const LayerView& view) {
     if (!m_held) return;
     const Vec3 toward = glm::normalize(view.scene.session.display->light.direction);
     const QPointF bright = m_from + kBallRadius * QPointF(toward.x, -toward.y);
@@ -34,7 +34,7 @@ void LightLayer::paint(QPainter& painter, const OverlayView& view) {
     painter.drawEllipse(bright, 4.5, 4.5);
 }
 
-bool LightLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
+bool LightLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) {
     if (keys != Qt::ControlModifier || m_services.isReadOnly()) return false;
     m_services.store().commit();
     m_held = true;
@@ -44,7 +44,7 @@ bool LightLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const O
     return true;
 }
 
-void LightLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const OverlayView& view) {
+void LightLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const LayerView& view) {
     if (m_services.isReadOnly()) return;
     const QPointF way = point - m_from;
     const Vec3 direction = turnedBall(m_start, way.x(), way.y(), kRadiusOfView * view.size.height());

@@ -12,9 +12,9 @@ class LightLayer : public OverlayLayer {
 public:
     LightLayer(Services& services, QWidget& overlay) : m_services(services), m_overlay(overlay) {}
 
-    void paint(QPainter& painter, const OverlayView& view) override;
-    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
-    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
+    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
+    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
     void end(bool kept) override;
 
 private:

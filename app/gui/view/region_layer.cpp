@@ -60,7 +60,7 @@ RegionLayer::RegionLayer(Services& services, RefineController& refining, QWidget
         QObject::connect(&refining, changed, &overlay, qOverload<>(&QWidget::update));
 }
 
-RegionLayer::Hold RegionLayer::holdAt(const QPointF& point, const OverlayView& view) const {
+RegionLayer::Hold RegionLayer::holdAt(const QPointF& point, const LayerView& view) const {
     if (m_services.isReadOnly()) return {};
     const std::optional<ImageRegion> region = m_refining.region();
     if (m_refining.selecting() != Selecting::Nothing) return {Grip::Draw}; // over an older one too
@@ -78,7 +78,7 @@ RegionLayer::Hold RegionLayer::holdAt(const QPointF& point, const OverlayView& v
     return {region->contains(at.x, at.y) ? Grip::Move : Grip::None};
 }
 
-Qt::CursorShape RegionLayer::cursorAt(const QPointF& point, const OverlayView& view) {
+Qt::CursorShape RegionLayer::cursorAt(const QPointF& point, const LayerView& view) {
     const Hold hold = holdAt(point, view);
     if (hold.grip == Grip::None) return Qt::ArrowCursor;
     if (hold.grip == Grip::Draw) return Qt::CrossCursor;
@@ -88,7 +88,7 @@ Qt::CursorShape RegionLayer::cursorAt(const QPointF& point, const OverlayView& v
     return hold.right == hold.down ? Qt::SizeFDiagCursor : Qt::SizeBDiagCursor;
 }
 
-bool RegionLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
+bool RegionLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) {
     if (keys != Qt::NoModifier) return false; // the view is panned, the light turned, whatever is selected
     const Hold hold = holdAt(point, view);
     if (hold.grip == Grip::None) return false;
@@ -100,7 +100,7 @@ bool RegionLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const 
     return true;
 }
 
-void RegionLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const OverlayView&) {
+void RegionLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const LayerView&) {
     if (!m_region) return;
     const glm::dvec2 from = fractionOf(m_from, m_size), to = fractionOf(point, m_size);
     const auto& start = m_start.outline;
@@ -139,7 +139,7 @@ void RegionLayer::end(bool kept) {
     if (grip == Grip::Draw) m_refining.setSelecting(Selecting::Nothing); // the mouse turns the volume again
 }
 
-bool RegionLayer::key(int key, const OverlayView&) {
+bool RegionLayer::key(int key, const LayerView&) {
     if (key == Qt::Key_Escape && m_refining.selecting() != Selecting::Nothing) {
         m_refining.setSelecting(Selecting::Nothing);
         return true;
@@ -150,7 +150,7 @@ bool RegionLayer::key(int key, const OverlayView&) {
     return true;
 }
 
-void RegionLayer::paint(QPainter& painter, const OverlayView& view) {
+void RegionLayer::paint(QPainter& painter, const LayerView& view) {
     const std::optional<ImageRegion> region = m_region ? m_region : m_refining.region();
     if (!region) return;
     const QPolygonF outline = polygonOf(*region, view.size);

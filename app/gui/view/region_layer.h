@@ -17,12 +17,12 @@ class RegionLayer : public OverlayLayer {
 public:
     RegionLayer(Services& services, RefineController& refining, QWidget& overlay);
 
-    void paint(QPainter& painter, const OverlayView& view) override;
-    Qt::CursorShape cursorAt(const QPointF& point, const OverlayView& view) override;
-    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
-    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
+    Qt::CursorShape cursorAt(const QPointF& point, const LayerView& view) override;
+    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
+    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
     void end(bool kept) override;
-    bool key(int key, const OverlayView& view) override;
+    bool key(int key, const LayerView& view) override;
 
 private:
     enum class Grip { None, Draw, Move, Resize };
@@ -30,7 +30,7 @@ private:
         Grip grip = Grip::None;
         int right = 0, down = 0; ///< sides that Resize moves: −1 left or upper, 1 right or lower, 0 neither
     };
-    Hold holdAt(const QPointF& point, const OverlayView& view) const;
+    Hold holdAt(const QPointF& point, const LayerView& view) const;
 
     Services& m_services;
     RefineController& m_refining;

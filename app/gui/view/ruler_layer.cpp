@@ -97,23 +97,23 @@ RulerLayer::RulerLayer(RulerController& rulers, SessionStore& store, QWidget& ov
     QObject::connect(&rulers, &RulerController::changed, &overlay, qOverload<>(&QWidget::update));
 }
 
-std::vector<RulerHandle> RulerLayer::handles(const OverlayView& view) const {
+std::vector<RulerHandle> RulerLayer::handles(const LayerView& view) const {
     return rulerHandles(m_rulers.draggable(), view.picture());
 }
 
-std::optional<Vec3> RulerLayer::placeAt(const QPointF& point, const OverlayView& view) const {
+std::optional<Vec3> RulerLayer::placeAt(const QPointF& point, const LayerView& view) const {
     if (const auto center = m_rulers.center()) return besideInView(view.picture(), *center, {point.x(), point.y()});
     return m_rulers.seenAt(view.scene.camera, point, view.size);
 }
 
-void RulerLayer::paint(QPainter& painter, const OverlayView& view) {
+void RulerLayer::paint(QPainter& painter, const LayerView& view) {
     const PictureView picture = view.picture();
     const double cap = MarkMaker(picture.width, picture.height, 1, {}).capHeight;
     m_hand.paint(painter, rulerMarks(m_rulers.shown(), picture, {1, cap}), handles(view));
     if (m_rulers.placing()) paintHint(painter, m_rulers.hint(), view.size.width());
 }
 
-Qt::CursorShape RulerLayer::cursorAt(const QPointF& point, const OverlayView& view) {
+Qt::CursorShape RulerLayer::cursorAt(const QPointF& point, const LayerView& view) {
     if (m_rulers.placing()) {
         m_rulers.pointAt(placeAt(point, view));
         return Qt::CrossCursor;
@@ -122,13 +122,13 @@ Qt::CursorShape RulerLayer::cursorAt(const QPointF& point, const OverlayView& vi
     return m_hand.isOver() ? Qt::OpenHandCursor : Qt::ArrowCursor;
 }
 
-bool RulerLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
+bool RulerLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) {
     if (keys != Qt::NoModifier || m_rulers.placing() || !m_hand.press(handles(view), point)) return false;
     m_store.commit();
     return true;
 }
 
-void RulerLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const OverlayView& view) {
+void RulerLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const LayerView& view) {
     const Ruler& start = m_hand.start();
     const RulerHandle& held = m_hand.held();
     const PictureView picture = view.picture();
@@ -150,11 +150,11 @@ void RulerLayer::end(bool kept) {
     m_overlay.update();
 }
 
-bool RulerLayer::key(int key, const OverlayView&) { return m_hand.key(key); }
+bool RulerLayer::key(int key, const LayerView&) { return m_hand.key(key); }
 
 bool RulerLayer::wantsClicks() const { return m_rulers.placing().has_value(); }
 
-void RulerLayer::click(const QPointF& point, const OverlayView& view) {
+void RulerLayer::click(const QPointF& point, const LayerView& view) {
     if (const auto world = placeAt(point, view)) return m_rulers.addPoint(*world);
     m_rulers.sayNothingSeen();
 }

@@ -41,19 +41,19 @@ class RulerLayer : public OverlayLayer {
 public:
     RulerLayer(RulerController& rulers, SessionStore& store, QWidget& overlay);
 
-    void paint(QPainter& painter, const OverlayView& view) override;
-    Qt::CursorShape cursorAt(const QPointF& point, const OverlayView& view) override;
-    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
-    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
+    Qt::CursorShape cursorAt(const QPointF& point, const LayerView& view) override;
+    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
+    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) override;
     void end(bool kept) override;
-    bool key(int key, const OverlayView& view) override;
+    bool key(int key, const LayerView& view) override;
     bool wantsClicks() const override;
-    void click(const QPointF& point, const OverlayView& view) override;
+    void click(const QPointF& point, const LayerView& view) override;
 
 private:
-    std::vector<RulerHandle> handles(const OverlayView& view) const;
+    std::vector<RulerHandle> handles(const LayerView& view) const;
     /// Of the next point; empty where nothing is seen.
-    std::optional<Vec3> placeAt(const QPointF& point, const OverlayView& view) const;
+    std::optional<Vec3> placeAt(const QPointF& point, const LayerView& view) const;
 
     RulerController& m_rulers;
     SessionStore& m_store;

@@ -37,7 +37,7 @@ SaliencyLayer::SaliencyLayer(PictureSaliencyController& saliency, ViewOverlay& o
     QObject::connect(&saliency, &PictureSaliencyController::changed, &overlay, [&overlay] { overlay.update(); });
 }
 
-void SaliencyLayer::paint(QPainter& painter, const OverlayView& view) {
+void SaliencyLayer::paint(QPainter& painter, const LayerView& view) {
     if (m_version != m_saliency.version()) {
         m_version = m_saliency.version();
         const std::optional<Plane> map = m_saliency.map();

@@ -14,7 +14,7 @@ class SaliencyLayer : public OverlayLayer {
 public:
     /// Both outlive this.
     SaliencyLayer(PictureSaliencyController& saliency, ViewOverlay& overlay);
-    void paint(QPainter& painter, const OverlayView& view) override;
+    void paint(QPainter& painter, const LayerView& view) override;
 
 private:
     PictureSaliencyController& m_saliency;

@@ -274,6 +274,8 @@ void SlicePane::hover(const std::optional<QPointF>& point) {
             m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false), {}};
         if (const Field* field = m_fields.field(); field != nullptr && m_hovered)
             m_hovered->field = valueAt(*field->volume, voxel, false);
+        if (const auto& overlay = m_services.scene().overlay; overlay && m_hovered)
+            m_hovered->overlay = overlay->valueAt(m_hovered->world);
     }
     std::optional<double> intensity;
     if (m_hovered && m_hovered->value) intensity = m_services.scene().volume->intensityOfValue(*m_hovered->value);
@@ -292,6 +294,10 @@ QString SlicePane::hoverText() const {
         const int feature = featureAt(scene.tf.features, scene.volume->intensityOfValue(*m_hovered->value));
         if (feature >= 0)
             text += "  " + QString::fromStdString(scene.tf.features[static_cast<std::size_t>(feature)].name);
+    }
+    if (m_hovered->overlay) {
+        const ValueRange all = scene.overlay->volume->dataRange();
+        text += "\n" + tr("overlay %1").arg(numberText(*m_hovered->overlay, all.hi - all.lo));
     }
     if (m_hovered->field) text = m_fields.valueText(*m_hovered->field) + "\n" + text;
     return text + "\n" + placeText(geometry, scene.session.coordinates->axes, m_hovered->world);

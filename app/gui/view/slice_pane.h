@@ -42,9 +42,10 @@ public:
 
     /// What lies under the mouse.
     struct Hovered {
-        Vec3 voxel{0}, world{0};     ///< voxel coordinates, and the same in the world
-        std::optional<double> value; ///< of the nearest voxel, data units; empty where it is invalid
-        std::optional<double> field; ///< of the nearest voxel, where a field is drawn
+        Vec3 voxel{0}, world{0};            ///< voxel coordinates, and the same in the world
+        std::optional<double> value;        ///< of the nearest voxel, data units; empty where it is invalid
+        std::optional<double> field;        ///< of the nearest voxel, where a field is drawn
+        std::optional<double> overlay = {}; ///< of the place, where it has one
     };
     const std::optional<Hovered>& hovered() const { return m_hovered; }
     QString hoverText() const; ///< value of the field, value, feature, place; empty where nothing is

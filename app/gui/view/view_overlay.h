@@ -14,7 +14,7 @@ namespace pellucid::gui {
 
 /// What a layer draws over: the present scene, which has a volume, and the view's size in logical pixels, as are all
 /// points here.
-struct OverlayView {
+struct LayerView {
     const Scene& scene;
     QSizeF size;
     PictureView picture() const {
@@ -27,21 +27,21 @@ struct OverlayView {
 class OverlayLayer {
 public:
     virtual ~OverlayLayer() = default;
-    virtual void paint(QPainter& painter, const OverlayView& view) = 0;
+    virtual void paint(QPainter& painter, const LayerView& view) = 0;
     /// The cursor over a point where a press would be taken; Qt::ArrowCursor elsewhere.
-    virtual Qt::CursorShape cursorAt(const QPointF& /*point*/, const OverlayView& /*view*/) { return Qt::ArrowCursor; }
+    virtual Qt::CursorShape cursorAt(const QPointF& /*point*/, const LayerView& /*view*/) { return Qt::ArrowCursor; }
     /// True: the press is taken, and drags and the release go here.
-    virtual bool press(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {
+    virtual bool press(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const LayerView& /*view*/) {
         return false;
     }
-    virtual void drag(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {}
+    virtual void drag(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const LayerView& /*view*/) {}
     /// The end of what a press began: `kept` by the release, or given up, as if nothing had been pressed.
     virtual void end(bool /*kept*/) {}
     /// Clicks, a press and release in one place that no press() has taken, are for this layer.
     virtual bool wantsClicks() const { return false; }
-    virtual void click(const QPointF& /*point*/, const OverlayView& /*view*/) {}
+    virtual void click(const QPointF& /*point*/, const LayerView& /*view*/) {}
     /// A key that the view has got (Qt::Key); true: it is taken.
-    virtual bool key(int /*key*/, const OverlayView& /*view*/) { return false; }
+    virtual bool key(int /*key*/, const LayerView& /*view*/) { return false; }
 };
 
 /// A transparent widget over the view that holds layers, the last one on top. The view hands it the mouse.
@@ -68,7 +68,7 @@ protected:
 
 private:
     void end(bool kept);
-    OverlayView overlayView() const { return {m_glimpse ? *m_glimpse : m_store.scene(), QSizeF(size())}; }
+    LayerView overlayView() const { return {m_glimpse ? *m_glimpse : m_store.scene(), QSizeF(size())}; }
 
     SessionStore& m_store;
     std::vector<std::unique_ptr<OverlayLayer>> m_layers;

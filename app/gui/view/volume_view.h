@@ -39,7 +39,7 @@ public:
     void lookFrom(const std::optional<Camera>& camera);
     bool drawsByGl() const; ///< else by the CPU
     QString rendererName() const { return m_surface->rendererName(); }
-    QString rendererReason() const { return m_reason; } ///< why it draws, a sentence
+    QString rendererReason() const; ///< why it draws, a sentence
 
     QSize sizeHint() const override { return {860, 520}; }
     QSize minimumSizeHint() const override { return {160, 100}; }
@@ -77,7 +77,8 @@ private:
     QString m_reason;
     QString m_machine; ///< renderer, processors and version, for which times are kept
     bool m_expectGl = false, m_probeWaits = false;
-    Job<int, RendererTimes> m_probe; // last: it ends before the rest goes
+    bool m_overlayInGlsPlace = false; ///< the CPU draws as long as there is an overlay, which OpenGL does not draw
+    Job<int, RendererTimes> m_probe;  // last: it ends before the rest goes
 };
 
 } // namespace pellucid::gui

@@ -11,12 +11,11 @@
 #include <glm/trigonometric.hpp>
 
 #include "base/parallel.h"
-#include "render/ambient_occlusion.h"
 #include "render/cpu/ray_packets.h"
-#include "render/cpu/ray_table.h"
+#include "render/cpu/ray_volume.h"
 #include "render/cpu/sheared_picture.h"
 #include "render/ground_raster.h"
-#include "render/ray_blocks.h"
+#include "render/overlay.h"
 
 namespace pellucid {
 
@@ -38,8 +37,8 @@ PacketMode packetMode(RenderMode mode) { return static_cast<PacketMode>(mode); }
 class CpuRenderer final : public TileRenderer {
 public:
     CpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options)
-        : m_volume(std::move(volume)), m_options(options), m_grid(sharedIntensityGrid(*m_volume)), m_blocks(*m_grid),
-          m_sheared(*m_grid, m_volume->geometry(), options.kernel) {}
+        : m_volume(std::move(volume)), m_options(options), m_rays(sharedIntensityGrid(*m_volume), m_volume->geometry()),
+          m_sheared(m_rays.grid(), m_volume->geometry(), options.kernel) {}
 
     std::string name() const override { return "cpu"; }
 
@@ -91,19 +90,21 @@ private:
     void draw(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
               Image& image, const std::vector<ImagePart>& tiles, const std::function<void(const ImagePart&)>& done,
               const JobControl& job) {
-        PacketScene scene = sceneOf(camera, tf, settings, scale, image);
+        Seen seen;
+        fillScenes(camera, tf, settings, scale, image, seen);
         const GroundPicture ground = groundUnder(camera, settings, scale, image, job);
-        if (!ground.depth.empty()) {
-            scene.groundDepth = ground.depth.data();
-            scene.ground = ground.rgba.data();
-        }
+        if (!ground.depth.empty())
+            for (PacketScene* scene : {&seen.first, &seen.second}) {
+                scene->groundDepth = ground.depth.data();
+                scene->ground = ground.rgba.data();
+            }
         const PacketKernel kernel = packetKernels()[static_cast<std::size_t>(m_options.kernel)];
         std::mutex mutex;
         std::atomic<std::size_t> count = 0;
         parallelFor(tiles.size(), [&](std::size_t i) {
             job.throwIfStopped();
             const ImagePart& tile = tiles[i];
-            kernel(scene, {tile.x0, tile.y0, tile.x1, tile.y1});
+            kernel(seen.first, {tile.x0, tile.y0, tile.x1, tile.y1});
             if (done) {
                 const std::lock_guard lock(mutex);
                 done(tile);
@@ -117,7 +118,9 @@ private:
                      Image& image, const JobControl& job) {
         const auto view = shearOf(camera, settings, scale);
         if (!view) return false;
-        m_sheared.draw(sceneOf(camera, tf, settings, scale, image), camera, *view, job);
+        Seen seen;
+        fillScenes(camera, tf, settings, scale, image, seen);
+        m_sheared.draw(seen.first, camera, *view, job);
         return true;
     }
 
@@ -129,22 +132,61 @@ private:
     }
 
     /// All but the ground.
-    PacketScene sceneOf(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
-                        Image& image) {
+    struct Seen {
+        PacketScene first, second; ///< of the volume, and of the overlay where there is one
+    };
+    void fillScenes(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
+                    Image& image, Seen& seen) {
         camera.validate(m_volume->geometry(), "camera");
-        prepare(tf, settings);
-        PacketScene scene;
-        fillVolume(scene);
-        fillColors(settings, scene);
-        fillCamera(camera, settings, scale, scene);
-        fillRegion(settings, scene);
-        fillMode(tf, settings, scene);
-        fillLight(camera, settings, scene);
-        scene.width = image.width;
-        scene.height = image.height;
-        scene.rgba = image.rgba.data();
-        scene.leap = m_options.leap;
-        return scene;
+        settings.featureAlone(tf); // tells where there is none
+        m_rays.prepare(tf, settings.onlyFeature, settings.mode == RenderMode::Surface);
+        fillPicture(settings, image, seen.first);
+        seen.first.mode = packetMode(settings.mode);
+        fillColors(settings, seen.first);
+        m_rays.fillFeatures(seen.first);
+        prepareOverlay(settings.overlay);
+        if (settings.overlay) {
+            fillPicture(settings, image, seen.second);
+            seen.first.overlay = &seen.second;
+        }
+        const PictureRays picture = raysOf(camera, settings, scale);
+        const std::vector<VoxelPlane> planes = planesInVoxels(settings.clipping, m_volume->geometry());
+        const auto fill = [&](RayVolume& volume, PacketScene& scene) {
+            volume.fillVolume(scene);
+            volume.fillCamera(camera, picture, scene);
+            volume.fillRegion(planes, m_rays.geometry(), scene);
+            fillLight(settings, scene.light);
+            if (scene.light.any) volume.fillLight(camera, settings.light.occlusion > 0, scene.light);
+        };
+        fill(m_rays, seen.first);
+        if (settings.overlay) fill(*m_overRays, seen.second);
+    }
+
+    /// Null: the last one is let go.
+    void prepareOverlay(const std::shared_ptr<const Overlay>& overlay) {
+        // Over one volume the same voxels lie in one place.
+        const bool sameVoxels = overlay && m_overlay && m_overlay->volume == overlay->volume;
+        m_overlay = overlay;
+        if (!sameVoxels) m_overRays.reset();
+        if (!overlay) return;
+        if (!m_overRays) m_overRays.emplace(sharedIntensityGrid(*overlay->volume), overlay->geometry);
+        m_overRays->prepare(overlay->tf, -1, false);
+    }
+
+    PictureRays raysOf(const Camera& camera, const RenderSettings& settings, double scale) const {
+        const Geometry& g = m_volume->geometry();
+        double shortest = g.d0(); // the finer of the two decides how long steps are
+        if (settings.overlay) {
+            const Vec3& spacing = settings.overlay->geometry.spacing;
+            shortest = std::min({shortest, spacing.x, spacing.y, spacing.z});
+        }
+        PictureRays rays;
+        rays.width = settings.width * scale;
+        rays.height = settings.height * scale;
+        rays.middle = glm::dot(g.boxCenter() - camera.eye, camera.forward());
+        rays.step = settings.stepInD0 * shortest;
+        rays.stepInD0 = rays.step / g.d0();
+        return rays;
     }
 
     /// Empty where the picture has none.
@@ -155,70 +197,6 @@ private:
                         {settings.width * scale, settings.height * scale, 0, 0, image.width, image.height}, job);
     }
 
-    /// Tables and blocks of the transfer function, where it is not the last one.
-    void prepare(const TransferFunction& tf, const RenderSettings& settings) {
-        const Feature* only = settings.featureAlone(tf);
-        const Prepared wanted{tf, settings.onlyFeature, settings.mode == RenderMode::Surface};
-        if (m_table && m_prepared == wanted) return;
-        m_table.reset();
-        m_features.clear();
-        m_openness.reset();
-        if (wanted.surfaces) {
-            prepareFeatures(tf, only);
-            m_table.emplace(
-                [&](double s) {
-                    const float code = static_cast<float>(s * m_grid->maxCode);
-                    return std::ranges::any_of(m_features,
-                                               [&](const auto& f) { return code >= f.low && code < f.high; });
-                },
-                *m_grid);
-        } else {
-            m_table.emplace(tf, only, *m_grid);
-        }
-        m_distances = m_blocks.distances([&](int low, int high) { return m_table->isOpaque(low, high); });
-        m_prepared = wanted;
-    }
-
-    /// Those that mode Surface draws.
-    void prepareFeatures(const TransferFunction& tf, const Feature* only) {
-        const std::vector<double> peaks = featureOpacities(tf);
-        for (std::size_t f = 0; f < peaks.size(); ++f) {
-            const Feature& feature = tf.features[f];
-            if (peaks[f] <= 0 || (only && only != &feature)) continue;
-            PacketScene::Feature to{lowestCode(feature), endCode(feature), {}, static_cast<float>(peaks[f])};
-            copy(vector(feature.color), to.rgb);
-            m_features.push_back(to);
-        }
-        if (m_features.size() > kMostSurfaces)
-            throw Error(std::to_string(m_features.size()) + " features have an opacity", "surfaces",
-                        "draw at most " + std::to_string(kMostSurfaces));
-    }
-    float lowestCode(const Feature& f) const { return static_cast<float>(f.a * m_grid->maxCode); }
-    float endCode(const Feature& f) const { ///< 1 belongs to a feature that ends there
-        return f.b >= 1 ? 65536.0f : static_cast<float>(f.b * m_grid->maxCode);
-    }
-
-    void fillVolume(PacketScene& s) const {
-        const Int3 n = m_volume->dims();
-        s.codes = m_grid->codes.wide();
-        s.narrowCodes = m_grid->codes.narrow();
-        s.valid = m_grid->valid.empty() ? nullptr : m_grid->valid.data();
-        for (int a = 0; a < 3; ++a) {
-            s.dims[a] = n[a];
-            s.blockDims[a] = m_blocks.dims()[a];
-        }
-        s.middleSlice = n.z / 2;
-        s.middleVoxel = static_cast<std::int64_t>(s.middleSlice) * n.x * n.y;
-        s.blockDistance = m_distances.data();
-        s.blockRange = m_blocks.ranges().data();
-        s.cellOfCode = m_table->cellOfCode();
-        s.intensityOfCode = 1.0f / static_cast<float>(m_grid->maxCode);
-        s.integral = m_table->integral();
-        s.colors = m_table->colors();
-        s.depthUnit = m_table->depthUnit();
-        s.lastEntry = static_cast<float>(m_table->cells());
-    }
-
     void fillColors(const RenderSettings& settings, PacketScene& s) const {
         if (!settings.colors) return;
         PELLUCID_CHECK(settings.colors->dims == m_volume->dims() &&
@@ -226,64 +204,22 @@ private:
         s.voxelColors = settings.colors->rgba.data();
     }
 
-    void fillCamera(const Camera& camera, const RenderSettings& settings, double scale, PacketScene& s) const {
-        const Geometry& g = m_volume->geometry();
-        const bool perspective = camera.projection == Projection::Perspective;
-        const Vec3 ahead = camera.forward(), right = camera.right(), down = -camera.trueUp();
-        const double half = perspective ? std::tan(glm::radians(camera.fovY) / 2) : camera.height / 2;
-        const double perPixel = 2 * half / (settings.height * scale);
-        const double middle = glm::dot(g.boxCenter() - camera.eye, ahead); // depth of the box
-        PacketCamera& c = s.camera;
-        c.middle[0] = static_cast<float>(settings.width * scale / 2);
-        c.middle[1] = static_cast<float>(settings.height * scale / 2);
-        copy(g.voxelFromWorld(camera.eye + middle * ahead), c.point);
-        copy(inVoxels(ahead), c.direction);
-        for (int i = 0; i < 2; ++i) {
-            const Vec3 side = inVoxels(perPixel * (i == 0 ? right : down));
-            copy(perspective ? middle * side : side, c.pointBy[i]);
-            copy(perspective ? side : Vec3(0), c.directionBy[i]);
-            c.slope[i] = perspective ? static_cast<float>(perPixel) : 0;
-        }
-        c.nearest = perspective ? static_cast<float>(-middle) : -1e30f;
+    /// What does not depend on the volume, but for the mode.
+    void fillPicture(const RenderSettings& settings, Image& image, PacketScene& s) const {
+        s.width = image.width;
+        s.height = image.height;
+        s.rgba = image.rgba.data();
+        s.leap = m_options.leap;
         s.halvings = settings.halvings();
-        s.step = static_cast<float>(settings.stepInD0 * g.d0());
-        s.stepInD0 = static_cast<float>(settings.stepInD0);
-    }
-
-    void fillRegion(const RenderSettings& settings, PacketScene& s) const {
-        const auto add = [&](const Vec3& normal, double offset) {
-            PacketPlane& plane = s.planes[s.planeCount++];
-            copy(normal, plane.normal);
-            plane.offset = static_cast<float>(offset);
-        };
-        const Geometry& g = m_volume->geometry();
-        for (int a = 0; a < 3; ++a) {
-            Vec3 normal(0);
-            normal[a] = 1;
-            add(-normal, -g.voxelBoxMin()[a]);
-            add(normal, g.voxelBoxMax()[a]);
-        }
-        for (const VoxelPlane& plane : planesInVoxels(settings.clipping, g)) add(plane.normal, plane.offset);
-    }
-
-    void fillMode(const TransferFunction& tf, const RenderSettings& settings, PacketScene& s) const {
-        s.mode = packetMode(settings.mode);
         s.jitter = settings.jitter;
-        s.features = m_features.data();
-        s.featureCount = static_cast<int>(m_features.size());
-        if (const Feature* only = settings.featureAlone(tf)) {
-            s.lowestShown = lowestCode(*only);
-            s.highestShown = endCode(*only);
-        }
         if (!settings.background) return;
         s.hasBackground = true;
         copy(vector(*settings.background), s.background);
         copy(vector(settings.backgroundTop.value_or(*settings.background)), s.backgroundTop);
     }
 
-    void fillLight(const Camera& camera, const RenderSettings& settings, PacketScene& s) {
+    void fillLight(const RenderSettings& settings, PacketLight& l) {
         const Light& from = settings.light;
-        PacketLight& l = s.light;
         l.shaded = from.on;
         l.any = from.changesColors();
         if (!l.any) return;
@@ -296,10 +232,6 @@ private:
                 static_cast<float>(from.specular * std::pow(static_cast<double>(i) / kSpecularEntries, from.shininess));
         l.specular = m_specular.data();
         const Geometry& g = m_volume->geometry();
-        const double scale = g.d0() / m_grid->maxCode;
-        copy(scale * inVoxels(camera.right()), l.cameraFromGradient[0]);
-        copy(scale * inVoxels(camera.trueUp()), l.cameraFromGradient[1]);
-        copy(-scale * inVoxels(camera.forward()), l.cameraFromGradient[2]);
         l.gradientOpacity = static_cast<float>(from.gradientOpacity);
         l.silhouettes = static_cast<float>(from.silhouettes);
         l.occlusion = static_cast<float>(from.occlusion);
@@ -307,40 +239,14 @@ private:
         l.cueFrom = static_cast<float>(-g.radius()); // depths count from the middle of the box
         l.cuePerDepth = static_cast<float>(1 / (2 * g.radius()));
         if (settings.background) copy(vector(*settings.background), l.cueColor);
-        if (from.occlusion > 0) fillOcclusion(settings, l);
     }
-
-    void fillOcclusion(const RenderSettings& settings, PacketLight& l) {
-        if (!m_openness)
-            m_openness = makeAmbientOcclusion(*m_grid, m_volume->geometry(), m_prepared.tf,
-                                              settings.featureAlone(m_prepared.tf));
-        l.openness = m_openness->open.data();
-        for (int a = 0; a < 3; ++a) l.opennessDims[a] = m_openness->open.dims()[a];
-        l.cellOfVoxel = 1.0f / AmbientOcclusion::kCell;
-        l.cellOfVoxelOffset = 0.5f / AmbientOcclusion::kCell - 0.5f;
-    }
-
-    /// A world direction in voxels; the world's gradient is along e what that in voxels is along inVoxels(e).
-    Vec3 inVoxels(const Vec3& direction) const { return m_volume->geometry().indexFromWorld() * direction; }
-
-    /// What tables and distances follow from.
-    struct Prepared {
-        TransferFunction tf;
-        int onlyFeature = -1;
-        bool surfaces = false;
-        bool operator==(const Prepared&) const = default;
-    };
 
     std::shared_ptr<const Volume> m_volume;
     CpuRenderOptions m_options;
-    std::shared_ptr<const IntensityGrid> m_grid;
-    RayBlocks m_blocks;
+    RayVolume m_rays;
     ShearedPicture m_sheared;
-    Prepared m_prepared; ///< of what follows
-    std::optional<RayTable> m_table;
-    std::vector<std::uint8_t> m_distances;
-    std::vector<PacketScene::Feature> m_features;
-    std::optional<AmbientOcclusion> m_openness;
+    std::shared_ptr<const Overlay> m_overlay; ///< the last one that was drawn
+    std::optional<RayVolume> m_overRays;      ///< its voxels
     std::vector<float> m_specular;
 };
 

@@ -107,6 +107,8 @@ struct PacketScene {
     const float* groundDepth = nullptr;    ///< width × height: where rays end; infinity: nowhere. Null: no ground
     const std::uint32_t* ground = nullptr; ///< its colours (VoxelColors::pack())
 
+    const PacketScene* overlay = nullptr; ///< a second volume, seen by the same rays; null: none
+
     bool hasBackground = false;
     float background[3]{}, backgroundTop[3]{}; ///< bottom and top of the picture
     PacketLight light;

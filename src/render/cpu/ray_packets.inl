@@ -3,16 +3,12 @@
 //   ray_packets_samples.inl  where rays run and what they meet
 //   ray_packets_light.inl    gradients, and what light makes of colours
 //   ray_packets_modes.inl    the modes that do not composite
+//   ray_packets_overlay.inl  two volumes in one pass
 // docs/method.md, "The picture", says what is computed.
-#include "render/cpu/ray_packets_modes.inl"
+#include "render/cpu/ray_packets_overlay.inl"
 
 namespace pellucid {
 namespace {
-
-/// Samples between two looks at the blocks, where rays are in one that is not passed over.
-constexpr int kRun = 4;
-/// What a ray has gathered up to this opacity is lit as one: half an 8-bit level.
-constexpr float kLitAtOnce = 1.0f / 512;
 
 /// Emission and absorption along eight rays. Between two samples the intensity goes linearly, and what it meets there
 /// comes from running integrals over the transfer function, so that thin tents and steps count in full.
@@ -343,13 +339,40 @@ Gathered gather(const PacketScene& s, const Samples& samples, const Rays& rays) 
     return Compositing<false, kInvalid, false>(s, samples, rays).run();
 }
 
+Gathered gather(const PacketScene& s, const Samples& samples, const Rays& rays) {
+    return s.valid ? gather<true>(s, samples, rays) : gather<false>(s, samples, rays);
+}
+
+/// Of both volumes. Modes other than Composite say of no place along the ray: the overlay lies in front of them.
+Gathered gatherBoth(const PacketScene& s, const Samples& samples, const Rays& rays, const Samples& overSamples,
+                    const Rays& overRays) {
+    if (s.mode == PacketMode::Composite) {
+        Course first, second;
+        join(rays, overRays, first, second);
+        if (s.light.any) return TwoMedia<true>(s, samples, first, overSamples, second).run();
+        return TwoMedia<false>(s, samples, first, overSamples, second).run();
+    }
+    Gathered front = gather(*s.overlay, overSamples, overRays);
+    const Gathered behind = gather(s, samples, rays);
+    for (int n = 0; n < kWide; ++n) front.color.rgb[n] += front.clear[n] * behind.color.rgb[n];
+    front.clear *= behind.clear;
+    return front;
+}
+
 void renderTile(const PacketScene& s, const PacketTile& tile) {
-    const Samples samples(s);
+    const Samples samples(s), overSamples(s.overlay ? *s.overlay : s);
     const Int8 right{0, 1, 2, 3, 0, 1, 2, 3}, down{0, 0, 0, 0, 1, 1, 1, 1};
     for (int y = tile.y0; y < tile.y1; y += 2)
         for (int x = tile.x0; x < tile.x1; x += 4) {
             const Rays rays = raysOf(s, x + right, y + down);
-            store(s, tile, x, y, s.valid ? gather<true>(s, samples, rays) : gather<false>(s, samples, rays));
+            if (s.overlay) {
+                const Rays overRays = raysOf(*s.overlay, x + right, y + down);
+                if (highest(overRays.count) > 0) {
+                    store(s, tile, x, y, gatherBoth(s, samples, rays, overSamples, overRays));
+                    continue;
+                }
+            }
+            store(s, tile, x, y, gather(s, samples, rays));
         }
 }
 

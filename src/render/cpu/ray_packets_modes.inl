@@ -17,6 +17,11 @@ struct Gathered {
     Vec8 clear; ///< transmittance
 };
 
+/// Samples between two looks at the blocks, where rays are in one that is not passed over.
+constexpr int kRun = 4;
+/// What a ray has gathered up to this opacity is lit as one: half an 8-bit level.
+constexpr float kLitAtOnce = 1.0f / 512;
+
 inline Vec8 placeOf(const Rays& r, float n) { return most(Vec8{}, least(n + r.shift, r.count)); }
 inline void positionAt(const Rays& r, Vec8 u, Vec8 (&position)[3]) {
     for (int a = 0; a < 3; ++a) position[a] = r.point[a] + u * r.step[a];

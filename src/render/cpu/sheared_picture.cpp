@@ -134,7 +134,7 @@ void fillWorld(const ShearView& view, const Camera& camera, const Geometry& geom
 } // namespace
 
 bool ShearedPicture::canDraw(const RenderSettings& settings) {
-    return settings.mode == RenderMode::Composite && !settings.colors && !showsGround(settings);
+    return settings.mode == RenderMode::Composite && !settings.colors && !settings.overlay && !showsGround(settings);
 }
 
 void ShearedPicture::turn() {

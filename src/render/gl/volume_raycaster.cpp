@@ -542,6 +542,7 @@ void VolumeRaycaster::draw(const Camera& camera, const RenderSettings& settings,
     PELLUCID_CHECK(m_impl->volume && m_impl->tf);
     PELLUCID_CHECK(target.resolutionScale > 0 && target.resolutionScale <= 1);
     settings.validate();
+    if (settings.overlay) throw UsageError("OpenGL draws no overlay", "engine gl", "draw it by the cpu engine");
     camera.validate(m_impl->volume->geometry(), "camera");
     const Tile tile = tileOf(settings, target);
     throwOnGlError("preparing to draw");
