@@ -108,8 +108,8 @@ Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volum
 
 std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options, const OptimizeResult& r) {
     if (!o.requireConverged || r.converged()) return {};
-    return Error("the targets were not reached (" + offTargetText(r.history[r.best].objective) +
-                     ", wanted below " + plainText(100 * options.tolerance) + " %)",
+    return Error("the targets were not reached (" + offTargetText(r.history[r.best].objective) + ", wanted below " +
+                     plainText(100 * options.tolerance) + " %)",
                  std::string(name(r.reason)) + " after " + std::to_string(r.iterations()) +
                      (r.iterations() == 1 ? " move" : " moves"),
                  "raise --max-iterations or --tolerance, or choose other targets");

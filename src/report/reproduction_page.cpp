@@ -38,14 +38,19 @@ std::string timeText(double seconds) {
            std::to_string(static_cast<int>(std::fmod(seconds, 60))) + " s";
 }
 
+/// Of something that is counted, such as steps, without decimals; shares have no unit.
+std::string valueText(double value, const std::string& unit) {
+    return !unit.empty() && value == std::round(value) ? shortText(value) : figureText(value);
+}
+
 std::string withUnit(double value, const std::string& unit) {
-    return figureText(value) + (unit.empty() ? "" : " " + unit);
+    return valueText(value, unit) + (unit.empty() ? "" : " " + unit);
 }
 
 std::string differenceText(const ReproducedNumber& n) {
     if (n.unit == "s") return n.thesis > 0 ? "× " + shortText(n.ours / n.thesis) : "";
     const double d = n.ours - n.thesis;
-    return (d < 0 ? "−" : "+") + figureText(std::abs(d));
+    return (d < 0 ? "−" : "+") + valueText(std::abs(d), n.unit);
 }
 
 /// What an item's statements come to, in a few words.
