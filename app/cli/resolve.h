@@ -47,7 +47,7 @@ struct SceneOptions {
 /// What a command does with the volume, and the memory that it takes beside it.
 struct Work {
     MemoryUse use;
-    bool byEngine = false; ///< the reference engine takes more
+    bool byEngine = false; ///< figures are computed: the reference engine takes more
     bool needsTf = true;   ///< false: an automatic start would be for nothing
 };
 

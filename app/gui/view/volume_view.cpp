@@ -109,7 +109,7 @@ void VolumeView::chooseRenderer(ViewRenderer wanted) {
     setSurface(std::make_unique<CpuSurface>());
 }
 
-QString VolumeView::rendererReason() const { return m_overlayInGlsPlace ? tr("OpenGL draws no overlay.") : m_reason; }
+QString VolumeView::rendererReason() const { return m_glSetAside ? tr("OpenGL draws no overlay.") : m_reason; }
 
 bool VolumeView::drawsByGl() const { return dynamic_cast<GlSurface*>(m_surface.get()) != nullptr; }
 
@@ -122,7 +122,7 @@ void VolumeView::startProbe() {
 
 void VolumeView::showTimes(const RendererTimes& times) {
     m_reason = reasonOf(times, drawsByGl());
-    if (!times.preferGl(m_expectGl)) m_overlayInGlsPlace = false;
+    if (!times.preferGl(m_expectGl)) m_glSetAside = false;
     // The other way, a view that has never shown OpenGL would have to make its window anew: it waits for the next one.
     if (drawsByGl() && !times.preferGl(m_expectGl)) {
         m_reason = reasonOf(times, false);
@@ -164,8 +164,8 @@ void VolumeView::updateScene() {
     PictureInput picture = m_fields ? m_fields->picture(1, 1) : pictureInput(m_store.scene(), 1, 1);
     if (m_glimpse) picture.camera = *m_glimpse;
     const bool overlaid = picture.settings.overlay != nullptr;
-    if (overlaid ? drawsByGl() : m_overlayInGlsPlace) {
-        m_overlayInGlsPlace = overlaid;
+    if (overlaid ? drawsByGl() : m_glSetAside) {
+        m_glSetAside = overlaid;
         if (overlaid) return setSurface(std::make_unique<CpuSurface>());
         return setSurface(std::make_unique<GlSurface>());
     }

@@ -77,8 +77,8 @@ private:
     QString m_reason;
     QString m_machine; ///< renderer, processors and version, for which times are kept
     bool m_expectGl = false, m_probeWaits = false;
-    bool m_overlayInGlsPlace = false; ///< the CPU draws as long as there is an overlay, which OpenGL does not draw
-    Job<int, RendererTimes> m_probe;  // last: it ends before the rest goes
+    bool m_glSetAside = false;       ///< the CPU draws as long as there is an overlay, which OpenGL does not draw
+    Job<int, RendererTimes> m_probe; // last: it ends before the rest goes
 };
 
 } // namespace pellucid::gui
