@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "controllers/verdict_choices.h"
 #include "optimize/answer/visibility_words.h"
 #include "services/services.h"
+#include "services/verdict_choices.h"
 #include "tf/shown_tf.h"
 #include "widgets/terms.h"
 

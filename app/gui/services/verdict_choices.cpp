@@ -1,4 +1,4 @@
-#include "controllers/verdict_choices.h"
+#include "services/verdict_choices.h"
 
 #include <cmath>
 
