@@ -41,7 +41,7 @@ TEST_CASE("a picture of the transfer-function editor", "[.pictures]") {
     VolumeSource source;
     source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
     w.open(source);
-    w.child<QCheckBox>("jointHistogram").click();
+    w.child<QAction>("jointHistogram").trigger();
     const Feature feature = w.document().tf().features.at(1);
     w.canvas().axis().setVisible(0, 0.8);
     w.services().selection().setFeature(feature.id);

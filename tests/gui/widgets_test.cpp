@@ -191,7 +191,8 @@ TEST_CASE("the raw dialog opens only what fits the file", "[raw]") {
 
 TEST_CASE("notices stay until they are dismissed", "[notices]") {
     Notices notices;
-    NoticeBar bar(notices);
+    QWidget window;
+    NoticeBar bar(notices, &window);
     CHECK(bar.isHidden());
     notices.add({"a", {}});
     notices.add({"b", {}});

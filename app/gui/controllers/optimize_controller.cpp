@@ -3,9 +3,11 @@
 #include <QDateTime>
 
 #include <algorithm>
+#include <iterator>
 
 #include "optimize/answer/visibility_words.h"
 #include "services/services.h"
+#include "services/verdict_choices.h"
 #include "tf/shown_tf.h"
 #include "widgets/terms.h"
 
@@ -61,7 +63,11 @@ OptimizeController::OptimizeController(Services& services)
               QStringList sentences;
               if (const std::string kept = keptText(q.found); !kept.empty()) sentences << QString::fromStdString(kept);
               for (const std::string& sentence : verdict.sentences) sentences << QString::fromStdString(sentence);
-              say(sentences.join(' '), std::vector<double>(m_exact));
+              const bool isReached = verdict.objective < q.task.options.tolerance;
+              std::vector<Notice::Choice> choices = exactShares(q.found);
+              if (!isReached)
+                  std::ranges::move(choicesOf(m_services, verdict, [this] { start(); }), std::back_inserter(choices));
+              say(sentences.join(' '), std::move(choices));
           },
           WhenBusy::StopOld, &services.compute()) {
     connect(&m_job, &JobBase::busyChanged, this, [this] {
@@ -106,14 +112,18 @@ OptimizeController::About OptimizeController::present() const {
     return {measureInput(m_services.scene()), m_services.scene().targets()};
 }
 
-void OptimizeController::say(const QString& text) { say(text, {}); }
-
-void OptimizeController::say(const QString& text, std::vector<double> exact) {
+void OptimizeController::say(const QString& text, std::vector<Notice::Choice> choices) {
     m_about = present();
-    if (text == m_message && exact == m_exact) return;
+    if (text == m_message && choices.empty() && m_choices.empty()) return;
     m_message = text;
-    m_exact = std::move(exact);
+    m_choices = std::move(choices);
     Q_EMIT messageChanged();
+}
+
+void OptimizeController::take(std::size_t choice) {
+    if (isRunning() || choice >= m_choices.size()) return;
+    const auto act = m_choices[choice].act; // which takes the message away, and the choice with it
+    act();
 }
 
 void OptimizeController::start() {
@@ -132,14 +142,15 @@ void OptimizeController::start() {
     begin(std::move(task));
 }
 
-void OptimizeController::takeExact() {
-    if (!hasExact() || isRunning()) return;
-    const TransferFunction tf = withShownOpacities(m_services.scene().tf, m_exact);
-    m_services.store().edit(tr("Exact shares"), {}, [&](Session& session) { session.setTf(tf); });
+std::vector<Notice::Choice> OptimizeController::exactShares(const OptimizeResult& result) {
+    if (!result.seen || !result.seen->exact) return {};
+    return {{tr("Use the exact shares"), [this, opacity = result.seen->exact->opacity] {
+                 const TransferFunction tf = withShownOpacities(m_services.scene().tf, opacity);
+                 m_services.store().edit(tr("Exact shares"), {}, [&](Session& session) { session.setTf(tf); });
+             }}};
 }
 
 void OptimizeController::begin(Task task) {
-    m_exact.clear();
     m_move = -1;
     m_firstObjective = m_objective = 0;
     m_opacity.clear();
@@ -197,8 +208,7 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     // It is true of what it was computed from.
     if (!(present() == About{input, task.targets}))
         return say(tr("Something has changed since the optimization began; nothing is known about the present state."));
-    say(sayOf(result, m_restarts),
-        result.seen && result.seen->exact ? result.seen->exact->opacity : std::vector<double>{});
+    say(sayOf(result, m_restarts), exactShares(result));
     if (best.objective < task.options.tolerance || result.reason == StopReason::Visible) return;
     m_question = Question{task, result};
     m_question->task.input = input;

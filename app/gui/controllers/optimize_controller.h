@@ -5,6 +5,7 @@
 #include <QObject>
 
 #include "jobs/job.h"
+#include "services/notices.h"
 #include "session/workspace.h"
 
 namespace pellucid::gui {
@@ -47,11 +48,10 @@ public:
     /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
     /// state any more.
     const QString& message() const { return m_message; }
-    void say(const QString& text);
-    /// Whether message() tells of a run that kept the picture visible instead of the shares asked for, which
-    /// takeExact() puts in its place, as a step of its own.
-    bool hasExact() const { return !m_exact.empty() && !m_message.isEmpty(); }
-    void takeExact();
+    void say(const QString& text, std::vector<Notice::Choice> choices = {});
+    /// What can be done about it, a button each; they are true of the same state.
+    const std::vector<Notice::Choice>& choices() const { return m_choices; }
+    void take(std::size_t choice);
 
 Q_SIGNALS:
     void runningChanged();
@@ -77,8 +77,8 @@ private:
     };
 
     About present() const;
-    /// `exact`: of hasExact(); empty: the message offers none.
-    void say(const QString& text, std::vector<double> exact);
+    /// For a run that kept the picture visible instead of the shares asked for: these, as a step of their own.
+    std::vector<Notice::Choice> exactShares(const OptimizeResult& result);
     void begin(Task task);
     void restart(const View& view);
     void showMove(const Task& task, int move, const OptimizeState& state);
@@ -92,10 +92,10 @@ private:
 
     Services& m_services;
     QString m_message;
+    std::vector<Notice::Choice> m_choices;
     About m_about;
     Task m_task;                   ///< the latest
     std::vector<double> m_opacity; ///< of its latest move; empty before
-    std::vector<double> m_exact;   ///< opacities of the exact shares, where its answer has others
     int m_number = 0;              ///< of the latest run: answers of others are dropped
     int m_move = -1, m_restarts = 0;
     double m_objective = 0, m_firstObjective = 0;

@@ -12,6 +12,7 @@
 #include "dialogs/study_files.h"
 #include "report/page_parts.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 
 namespace pellucid::gui {
@@ -28,6 +29,7 @@ StudyAnalyzeDialog::StudyAnalyzeDialog(const QString& folder, QWidget* parent)
       m_buttons(closingButtons(*this, QDialogButtonBox::Ok | QDialogButtonBox::Cancel)) {
     setObjectName("studyAnalyzeDialog");
     setWindowTitle(tr("Analyze a study"));
+    elideInTheMiddle(*m_participants);
     m_rules->setChecked(true);
     connect(m_folder, &QLineEdit::textChanged, this, &StudyAnalyzeDialog::follow);
     auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});

@@ -12,6 +12,7 @@
 
 #include "dialogs/closing_buttons.h"
 #include "render/render_settings.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 #include "widgets/named.h"
 
@@ -100,6 +101,7 @@ QWidget* StudyDialog::controlOf(const Setting& setting) {
 
 QWidget* StudyDialog::makeStimuli() {
     m_stimuli->setColumnCount(kColumns);
+    elideInTheMiddle(*m_stimuli);
     m_stimuli->setHorizontalHeaderLabels({tr("Stimulus"), tr("Feature"), tr("Word"), tr("Practice")});
     m_stimuli->horizontalHeader()->setSectionResizeMode(kLabel, QHeaderView::Stretch);
     m_stimuli->verticalHeader()->hide();

@@ -33,7 +33,7 @@ const std::array kTitles{QT_TR_NOOP("Opacity"), QT_TR_NOOP("Saturation"), QT_TR_
 ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* parent)
     : QWidget(parent), m_services(services), m_opening(opening) {
     setObjectName("channelsBox");
-    auto* form = inset(new QFormLayout(this), {});
+    auto* form = narrowForm(inset(new QFormLayout(this), {}));
     form->setVerticalSpacing(6);
     for (QSpinBox* box : {m_featureFrames, m_frames}) {
         box->setRange(1, kMostFrames);

@@ -18,6 +18,7 @@
 #include "store/edits.h"
 #include "tf/shown_tf.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 #include "widgets/number_text.h"
 #include "widgets/plot_view.h"
@@ -164,6 +165,7 @@ void ConvergencePanel::makePlots() {
 }
 
 void ConvergencePanel::makeList() {
+    elideInTheMiddle(*m_list);
     m_list->setRootIsDecorated(false);
     m_list->setHeaderLabels({tr("Run"), tr("Moves"), tr("F"), tr("s")});
     const QString tips[] = {tr("Checked runs are compared in the first plot; the selected one has\n"

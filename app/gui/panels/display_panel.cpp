@@ -179,6 +179,7 @@ PanelInfo displayPanel() {
     return {.id = "display",
             .title = QObject::tr("Display"),
             .visible = false,
+            .tabOf = "features",
             .keys = QKeySequence("Ctrl+D"),
             .tip =
                 QObject::tr("Mode, background, one feature alone, how finely it is drawn, range of values, component"),

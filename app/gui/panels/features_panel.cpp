@@ -24,7 +24,11 @@
 #include "panels/target_bars.h"
 #include "panels/variable_words.h"
 #include "services/services.h"
+#include "store/edits.h"
+#include "tf/edit.h"
+#include "tf/shapes.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 #include "widgets/lock_mark.h"
 #include "widgets/opacity_editor.h"
@@ -35,10 +39,12 @@ namespace pellucid::gui {
 namespace {
 
 constexpr int kRowHeight = 26;
-constexpr int kSwatch = 26;   // width of the colour in the name's cell
-constexpr int kEye = 30;      // width of the eyes' column
-constexpr int kOpacity = 104; // width of the opacities: a slider and four decimals
-constexpr int kPadlock = 16;  // width in the name's cell
+constexpr int kSwatch = 26;    // width of the colour in the name's cell
+constexpr int kEye = 30;       // width of the eyes' column
+constexpr int kOpacity = 108;  // width of the opacities: a slider and four decimals
+constexpr int kLeastName = 90; // width of a name with its colour, where there are values beside it
+constexpr int kCellMargins = 16;
+constexpr int kPadlock = 16; // width in the name's cell
 
 /// An eye in each cell of its column: open, closed, or faint where another feature is drawn alone.
 class EyeDelegate : public QStyledItemDelegate {
@@ -144,13 +150,6 @@ QPushButton* button(const QString& text, const char* name, const QString& tip, Q
     return b;
 }
 
-/// A button with a menu, whose text has an arrow already.
-QToolButton* arrowButton(const QString& text, const char* name, const QString& tip, QWidget* parent) {
-    QToolButton* const b = named(menuButton(text, parent), name, tip);
-    b->setStyleSheet("QToolButton::menu-indicator { image: none; }");
-    return b;
-}
-
 /// A button that does what an action of a menu does, with a text of its own.
 QToolButton* actionButton(QAction& action, const QString& text, const QString& name) {
     action.setIconText(text);
@@ -159,7 +158,7 @@ QToolButton* actionButton(QAction& action, const QString& text, const QString& n
     return b;
 }
 
-const QMargins kSides{10, 0, 10, 0}; ///< of rows beside the table, which has none
+const QMargins kSides{6, 0, 6, 0}; ///< of rows beside the table, which has none
 
 class FeaturesPanel : public QWidget {
 public:
@@ -167,8 +166,10 @@ public:
 
 protected:
     bool eventFilter(QObject* watched, QEvent* event) override; ///< the mouse on eyes and colours
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
+    void shareOutColumns();
     void prepareTable();
     QLayout* makeShapeRow();
     QLayout* makeMethodRow();
@@ -179,6 +180,8 @@ private:
     void follow(); ///< the state, and what is computed of it
     void followRun();
     void showMessage();
+    void showEmpty();
+    void removeEmpty();
     void adjustTable();
 
     Services& m_services;
@@ -187,13 +190,13 @@ private:
     QTableView* m_table = named(new QTableView(this), "featuresTable");
     TargetBars* m_bars = new TargetBars(m_services.store(), m_services.results());
     DensitySlider* m_density = new DensitySlider(m_services, this);
-    QToolButton* m_add = arrowButton(tr("Add ▾"), "addShapeButton",
-                                     tr("A new feature of some shape, in a gap between the others"), this);
+    QToolButton* m_add = named(menuButton(tr("Add"), this), "addShapeButton",
+                               tr("A new feature of some shape, in a gap between the others"));
     QToolButton* m_colors =
-        arrowButton(tr("Colours ▾"), "colorMapButton", tr("Colours by value from a map; opacities stay"), this);
+        named(menuButton(tr("Colours"), this), "colorMapButton", tr("Colours by value from a map; opacities stay"));
     QToolButton* m_targets =
-        arrowButton(tr("Targets ▾"), "targetsButton",
-                    tr("All targets at once: equal, by value, as now, for one feature, inverted; and locks"), this);
+        named(menuButton(tr("Targets"), this), "targetsButton",
+              tr("All targets at once: equal, by value, as now, for one feature, inverted; and locks"));
     QPushButton* m_refine =
         button(tr("&Refine"), "refineButton",
                tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this);
@@ -211,28 +214,40 @@ private:
                            tr("How far the features' attention lies from the targets.\n"
                               "F, the root mean square of VWS − target over the features; 1 is 100 %")));
     QLabel* m_message = withAnyWidth(wrappedLabel("panelMessage", this));
+    QGridLayout* m_choiceRows = new QGridLayout; ///< below the message: what can be done about it
+    std::vector<QToolButton*> m_choices;
+    FeatureId m_empty = 0; ///< a feature without voxels; 0: none
+    QLabel* m_emptyLabel = withAnyWidth(wrappedLabel("emptyFeatureLabel", this));
+    QToolButton* m_removeEmpty =
+        named(toolButton(tr("Remove empty feature"), this), "removeEmptyButton",
+              tr("Removes the feature from the curve; undo brings it back. Or move its borders to values that occur"));
 };
 
 FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent)
     : QWidget(parent), m_services(services), m_controllers(controllers) {
     setObjectName("featuresPanel");
     prepareTable();
+    elideInTheMiddle(*m_table);
     m_add->menu()->addActions(m_controllers.features.shapes());
     m_controllers.features.fillColorMenu(*m_colors->menu());
     m_targets->menu()->addActions(m_controllers.targets.entries());
     m_progress->setTextVisible(true);
     m_progress->setMaximumHeight(18);
     makeFaint(*m_message);
+    makeFaint(*m_emptyLabel);
+    m_choiceRows->setColumnStretch(1, 1);
+    connect(m_removeEmpty, &QToolButton::clicked, this, &FeaturesPanel::removeEmpty);
     auto* scroll = named(new QScrollArea(this), "barsScroll");
     scroll->setWidget(m_bars);
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
-    QLayout* const status = columnOf({m_distance, m_progress, m_message}, 4);
+    QLayout* const status = columnOf(
+        {m_emptyLabel, rowOf({m_removeEmpty, Cell::rest()}), m_distance, m_progress, m_message, m_choiceRows}, 4);
     QLayout* const liveRow =
-        rowOf({m_targets, actionButton(*m_controllers.live.action(), tr("Live"), "liveTargetsButton"), Cell::rest(),
-               actionButton(*m_controllers.saving.barsAction(), tr("Save bars…"), "saveBarsButton")},
+        rowOf({m_targets, actionButton(*m_controllers.live.action(), tr("Live"), "liveTargetsButton"), m_colors,
+               Cell::rest(), actionButton(*m_controllers.saving.barsAction(), tr("Bars…"), "saveBarsButton")},
               4);
     setLayout(inset(columnOf({m_table,
                               inset(makeShapeRow(), kSides),
@@ -240,7 +255,7 @@ FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidg
                               {scroll, 1},
                               // Above what is taken hold of, which must not move when a message comes or goes.
                               inset(status, kSides),
-                              inset(rowOf({{m_density, 1}, m_colors}, 10), kSides),
+                              inset(rowOf({{m_density, 1}}), kSides),
                               inset(makeMethodRow(), kSides),
                               makeButtons()},
                              8),
@@ -252,7 +267,6 @@ FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidg
     connect(m_undo, &QPushButton::clicked, &services, &Services::undo);
     connect(m_redo, &QPushButton::clicked, &services, &Services::redo);
     connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
-    connect(m_message, &QLabel::linkActivated, &optimizing, &OptimizeController::takeExact);
     connect(m_bars, &TargetBars::currentChanged, this, &FeaturesPanel::select);
     connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
     connect(&optimizing, &OptimizeController::moved, this, &FeaturesPanel::followRun);
@@ -279,6 +293,9 @@ QLayout* FeaturesPanel::makeButtons() {
     buttons->addWidget(m_undo, 0, 2);
     buttons->addWidget(m_redo, 0, 3);
     for (int i = 0; i < 4; ++i) buttons->setColumnStretch(i, 1);
+    // As narrow as their texts, where the panel is: the style would make each as wide as those of dialogs.
+    for (QPushButton* button : {m_refine, m_optimize, m_cancel, m_undo, m_redo})
+        button->setMinimumWidth(button->fontMetrics().horizontalAdvance(button->text()) + 12);
     return buttons;
 }
 
@@ -294,6 +311,7 @@ void FeaturesPanel::prepareTable() {
         m_services, this,
         [this] {
             m_table->setColumnHidden(FeaturesModel::PictureShare, !m_services.scene().session.pictureSaliency->on);
+            shareOutColumns();
         },
         &Session::pictureSaliency);
     m_table->verticalHeader()->hide();
@@ -329,8 +347,8 @@ void FeaturesPanel::prepareTable() {
 }
 
 QLayout* FeaturesPanel::makeShapeRow() {
-    QHBoxLayout* const row = rowOf({m_add}, 4);
-    const QString texts[] = {tr("Split"), tr("Merge"), tr("Duplicate"), tr("Remove")};
+    QHBoxLayout* const row = rowOf({m_add}, 3);
+    const QString texts[] = {tr("Split"), tr("Merge"), tr("Copy"), tr("Remove")};
     const QList<QAction*>& actions = m_controllers.features.shaping();
     for (qsizetype i = 0; i < actions.size(); ++i)
         row->addWidget(actionButton(*actions[i], texts[i], actions[i]->objectName() + "Button"));
@@ -408,8 +426,27 @@ void FeaturesPanel::adjustTable() {
         m_table->openPersistentEditor(m_model->index(row, FeaturesModel::Opacity));
     }
     followSelection();
+    shareOutColumns();
     const int shown = std::clamp(m_model->rowCount(), 1, 6);
     m_table->setFixedHeight(m_table->horizontalHeader()->sizeHint().height() + shown * kRowHeight + 2);
+}
+
+void FeaturesPanel::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    shareOutColumns();
+}
+
+/// A narrow panel leaves out the values, which the curve shows, too: names and opacities must be read.
+void FeaturesPanel::shareOutColumns() {
+    int others = kEye + kOpacity;
+    if (!m_table->isColumnHidden(FeaturesModel::PictureShare))
+        others += m_table->columnWidth(FeaturesModel::PictureShare);
+    int values = m_table->fontMetrics().horizontalAdvance(
+        m_table->horizontalHeader()->model()->headerData(FeaturesModel::Range, Qt::Horizontal).toString());
+    for (int row = 0; row < m_model->rowCount(); ++row)
+        values = std::max(values, m_table->fontMetrics().horizontalAdvance(
+                                      m_model->index(row, FeaturesModel::Range).data().toString()));
+    m_table->setColumnHidden(FeaturesModel::Range, width() - others - values - kCellMargins < kLeastName);
 }
 
 void FeaturesPanel::followRun() {
@@ -448,10 +485,43 @@ void FeaturesPanel::followRun() {
 void FeaturesPanel::showMessage() {
     const OptimizeController& optimizing = m_controllers.optimizing;
     const QString& text = optimizing.message();
-    const QString link = QStringLiteral(" <a href=\"exact\">%1</a>").arg(tr("Use the exact shares"));
-    m_message->setTextFormat(optimizing.hasExact() ? Qt::RichText : Qt::PlainText);
-    m_message->setText(optimizing.hasExact() ? text.toHtmlEscaped() + link : text);
+    m_message->setText(text);
     m_message->setVisible(!text.isEmpty());
+    for (QToolButton* button : m_choices) button->deleteLater(); // it may be the one that was clicked
+    m_choices.clear();
+    for (std::size_t i = 0; i < optimizing.choices().size(); ++i) {
+        auto* const button = named(toolButton(optimizing.choices()[i].text, this),
+                                   QStringLiteral("messageChoice%1").arg(i), tr("Do that; undo takes it back"));
+        connect(button, &QToolButton::clicked, &m_controllers.optimizing,
+                [&run = m_controllers.optimizing, i] { run.take(i); });
+        m_choiceRows->addWidget(button, static_cast<int>(i) / 2, static_cast<int>(i) % 2, Qt::AlignLeft);
+        m_choices.push_back(button);
+    }
+}
+
+/// A feature that no voxel has has no share, and no target: it can go.
+void FeaturesPanel::showEmpty() {
+    const auto& features = m_services.scene().tf.features;
+    m_empty = 0;
+    QString name;
+    for (std::size_t f = features.size(); f-- > 0;)
+        if (m_services.scene().isEmpty(f)) {
+            m_empty = features[f].id;
+            name = QString::fromStdString(features[f].name);
+        }
+    m_emptyLabel->setText(tr("%1 is empty: no voxel has its values.").arg(name));
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_emptyLabel, m_removeEmpty})
+        widget->setVisible(m_empty != 0);
+    m_removeEmpty->setEnabled(m_services.isEditable());
+}
+
+void FeaturesPanel::removeEmpty() {
+    const int feature = featureWithId(m_services.scene().tf, m_empty);
+    if (feature < 0 || !m_services.isEditable()) return;
+    m_services.attempt(tr("Remove empty feature"), [&] {
+        m_services.store().commit();
+        editTf(m_services.store(), withFeatureRemoved(m_services.scene().tf, feature), tr("Remove empty feature"));
+    });
 }
 
 void FeaturesPanel::follow() {
@@ -465,6 +535,7 @@ void FeaturesPanel::follow() {
     for (QWidget* widget : std::initializer_list<QWidget*>{m_density, m_colors, m_add, m_targets})
         widget->setEnabled(ready);
     followSelection();
+    showEmpty();
 
     const Results& results = m_services.results();
     m_distance->setEnabled(results.vwsIsCurrent());
@@ -485,7 +556,6 @@ PanelInfo featuresPanel() {
     return {.id = "features",
             .title = QObject::tr("Features"),
             .group = PanelGroup::Shares,
-            .size = 300,
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
@@ -499,9 +569,7 @@ PanelInfo featuresPanel() {
                      {place, QObject::tr("Double-click on a target, Enter, a digit"), QObject::tr("type the target")},
                      {place, QObject::tr("Click on a target's padlock, L"),
                       QObject::tr("hold the target where others are set")}});
-                auto* panel = new FeaturesPanel(services, controllers, parent);
-                panel->setMinimumWidth(340);
-                return panel;
+                return new FeaturesPanel(services, controllers, parent);
             }};
 }
 

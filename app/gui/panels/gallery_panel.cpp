@@ -13,6 +13,7 @@
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/image_convert.h"
 #include "widgets/layouts.h"
 #include "widgets/theme.h"
@@ -87,6 +88,7 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
           [](const Task&, int&) {}) {
     setObjectName("galleryPanel");
     m_take->addItems({tr("Take all"), tr("Take colours"), tr("Take opacities")});
+    elideInTheMiddle(*m_list);
     m_list->setViewMode(QListView::IconMode);
     m_list->setResizeMode(QListView::Adjust);
     m_list->setMovement(QListView::Static);

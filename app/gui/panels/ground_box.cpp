@@ -46,7 +46,7 @@ GroundBox::GroundBox(Services& services, OpenController& opening) : m_services(s
     fillMenu();
     for (const std::string& name : groundColorNames())
         m_colorMap->addItem(QString::fromStdString(name), QString::fromStdString(name));
-    auto* form = inset(new QFormLayout(this), {});
+    auto* form = narrowForm(inset(new QFormLayout(this), {}));
     form->setVerticalSpacing(6);
     form->addRow(rowOf({m_shown, {m_file, 1}, m_choose, m_remove}));
     form->addRow(tr("Colours"), m_colorMap);

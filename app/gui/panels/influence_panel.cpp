@@ -20,7 +20,8 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRowNames = 92; // at most, pixels
+constexpr int kRowNames = 92;                 // at most, pixels
+constexpr int kColumns = 4, kCellMargins = 8; // columns that are seen at once, beside their numbers
 
 /// With so many digits that count, or whole.
 QString signedText(double value, int digits) {
@@ -85,7 +86,7 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
     m_table->setHorizontalScrollMode(QAbstractItemView::ScrollPerPixel);
     m_table->setTextElideMode(Qt::ElideNone);
     for (QHeaderView* header : {m_table->horizontalHeader(), m_table->verticalHeader()})
-        header->setTextElideMode(Qt::ElideRight);
+        header->setTextElideMode(Qt::ElideMiddle);
     m_table->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     m_table->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);
     m_table->viewport()->installEventFilter(this);
@@ -158,6 +159,8 @@ void InfluencePanel::rebuild() {
     }
     fitColumns();
     constexpr int kRows = 4; // at least, without a scroll bar
+    m_table->setMinimumWidth(kRowNames + std::min(n, kColumns) *
+                                             (m_table->fontMetrics().horizontalAdvance("-100.0 %") + kCellMargins));
     m_table->setMinimumHeight(m_table->horizontalHeader()->height() +
                               std::min(n, kRows) * m_table->verticalHeader()->sectionSizeHint(0) + 4);
     refresh();
@@ -231,6 +234,7 @@ PanelInfo influencePanel() {
             .title = QObject::tr("Influence"),
             .group = PanelGroup::Shares,
             .visible = false, // costs a sweep more
+            .tabOf = "features",
             .keys = QKeySequence("Ctrl+I"),
             .tip = QObject::tr("How attention follows each opacity, and which feature hides which"),
             .make = [](Services& services, Controllers&, QWidget* parent) {

@@ -11,6 +11,7 @@
 #include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
@@ -101,7 +102,7 @@ void MeasuresPanel::makeList() {
     m_list->header()->setSectionResizeMode(kName, QHeaderView::ResizeToContents);
     m_list->header()->setSectionResizeMode(kKind, QHeaderView::ResizeToContents);
     m_list->setEditTriggers(QAbstractItemView::NoEditTriggers);
-    m_list->setTextElideMode(Qt::ElideRight);
+    elideInTheMiddle(*m_list);
     m_list->installEventFilter(this);
     connect(m_list, &QTreeWidget::itemChanged, this, &MeasuresPanel::itemChanged);
     connect(m_list, &QTreeWidget::itemDoubleClicked, this, &MeasuresPanel::rename);

@@ -23,11 +23,11 @@ struct PanelInfo {
     QString title;
     PanelGroup group = PanelGroup::Look;
     Qt::DockWidgetArea area = Qt::RightDockWidgetArea;
-    bool visible = true;         ///< at the first start
-    const char* tabOf = nullptr; ///< id of a panel before it that it is a tab beside; null: a place of its own
-    const char* below = nullptr; ///< id of a panel before it that it stands below; null: wherever there is room
-    int size = 0;                ///< width (or height, at the bottom) at the first start, pixels; 0: as it likes
-    QKeySequence keys;           ///< show or hide it
+    bool visible = true;          ///< at the first start
+    const char* tabOf = nullptr;  ///< id of a panel before it that it is a tab beside; null: a place of its own
+    const char* beside = nullptr; ///< id of a panel before it that it stands right of; null: wherever there is room
+    int size = 0;                 ///< width (or height, at the bottom) at the first start, pixels; 0: as it likes
+    QKeySequence keys;            ///< show or hide it
     QString tip;
     std::function<QWidget*(Services&, Controllers&, QWidget* parent)> make;
 };

@@ -10,7 +10,7 @@ Panel transferFunctionPanel, playerPanel, featuresPanel, refinePanel, influenceP
 
 std::vector<PanelInfo> panelRegistry() {
     return {transferFunctionPanel(),
-            playerPanel(), // below the one before it, which has no tabs yet: else it would become a tab, too
+            playerPanel(), // beside the one before it, which has no tabs yet: else it would become a tab, too
             featuresPanel(),
             refinePanel(),
             influencePanel(),

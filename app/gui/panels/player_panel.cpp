@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <QAction>
+#include <QMainWindow>
 #include <QPainter>
 #include <QSlider>
 
@@ -11,6 +12,8 @@
 #include "panels/time_strip.h"
 #include "services/services.h"
 #include "widgets/controls.h"
+#include "widgets/dock_title.h"
+#include "widgets/fitting_row.h"
 #include "widgets/layouts.h"
 #include "widgets/number_box.h"
 #include "widgets/theme.h"
@@ -111,6 +114,7 @@ struct Work {
         stop->setAutoRaise(true);
     }
     void show(double share, bool goesOn, const QString& tip) {
+        bar->setToolTip(text->text()); // which has no room in a narrow window
         bar->setValue(static_cast<int>(1000 * share));
         stop->setText(goesOn ? QObject::tr("Stop") : QObject::tr("Go on"));
         stop->setToolTip(tip);
@@ -122,6 +126,9 @@ class PlayerPanel : public QWidget {
 public:
     PlayerPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent);
 
+    /// Puts the frame, and what goes on by itself, into a row around the panel.
+    void fill(FittingRow& row);
+
 private:
     void follow(const Scene& before, const Scene& after);
     void followPlayer();
@@ -130,6 +137,7 @@ private:
     void followAdapting();
     QLayout* playRow();
     QLayout* adaptRow();
+    QLayout* keyRow();
     QToolButton* button(QAction& action, const char* name, const QIcon& icon, const QString& text = {});
     void showDock(bool shown);
 
@@ -163,7 +171,7 @@ private:
 
 PlayerPanel::PlayerPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent)
     : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting) {
-    setLayout(inset(columnOf({playRow(), {m_strip, 1}, adaptRow()}, 2), {4, 2, 4, 2}));
+    setLayout(inset(columnOf({playRow(), {m_strip, 1}, adaptRow(), keyRow()}, 2), {2, 2, 2, 4}));
     connect(m_strip, &TimeStrip::frameWanted, &player, &PlayerController::goTo);
     connect(m_strip, &TimeStrip::stepWanted, &player, &PlayerController::step);
     connect(&services.store(), &SessionStore::changed, this, &PlayerPanel::follow);
@@ -197,11 +205,21 @@ QLayout* PlayerPanel::playRow() {
     m_speed->setValue(m_player.speed());
     connect(m_speed, &QDoubleSpinBox::valueChanged, this, [this](double value) { m_player.setSpeed(value); });
     makeFaint(*m_rate);
+    withAnyWidth(m_rate)->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     connect(m_survey.stop, &QToolButton::clicked, this,
             [this] { m_player.isSurveying() ? m_player.stopSurvey() : m_player.goOnSurveying(); });
-    add(*row, {m_speed, Cell::gap(8), m_frame, Cell::gap(12), m_rate, Cell::rest()});
-    add(*row, {m_survey.text, m_survey.bar, m_survey.stop});
+    add(*row, {m_speed, Cell::gap(8), {m_rate, 1}});
     return row;
+}
+
+void PlayerPanel::fill(FittingRow& row) {
+    row.add(m_frame);
+    row.addGap();
+    for (const Work* work : {&m_adapt, &m_survey}) { // the stop button stays longest
+        row.add(work->text, 2);
+        row.add(work->bar, 1);
+        row.add(work->stop);
+    }
 }
 
 QToolButton* PlayerPanel::button(QAction& does, const char* name, const QIcon& icon, const QString& text) {
@@ -228,15 +246,22 @@ QLayout* PlayerPanel::adaptRow() {
     connect(m_mode, &QComboBox::activated, this,
             [this](int index) { m_adapting.setMode(static_cast<AdaptSettings::Mode>(index)); });
     m_coherence->setRange(0, kCoherenceSteps);
-    m_coherence->setFixedWidth(110);
+    m_coherence->setMinimumWidth(50);
+    m_coherence->setMaximumWidth(140);
     connect(m_coherence, &QSlider::valueChanged, this,
             [this](int step) { m_adapting.setCoherence(coherenceOf(step)); });
     m_coherenceText->setMinimumWidth(m_coherenceText->fontMetrics().horizontalAdvance("0.0099"));
     auto* label = new QLabel(tr("Transfer function:"), this);
     label->setBuddy(m_mode);
-    auto* row = rowOf(
-        {label, m_mode, Cell::gap(6), new QLabel(tr("Coherence"), this), m_coherence, m_coherenceText, Cell::gap(6)},
-        2);
+    connect(m_adapt.stop, &QToolButton::clicked, this,
+            [this] { m_adapting.isStopped() ? m_adapting.goOn() : m_adapting.stop(); });
+    return rowOf(
+        {label, m_mode, Cell::gap(6), new QLabel(tr("Coherence"), this), m_coherence, m_coherenceText, Cell::rest()},
+        4);
+}
+
+QLayout* PlayerPanel::keyRow() {
+    auto* row = rowOf({}, 2);
     const std::pair<const char*, QString> keys[] = {{"tfKey", tr("◆ Key")},
                                                     {"targetKey", tr("○ Targets")},
                                                     {"previousKey", tr("‹ key")},
@@ -244,9 +269,7 @@ QLayout* PlayerPanel::adaptRow() {
                                                     {"fromHere", tr("Start from this frame")}};
     for (qsizetype i = 0; i < m_adapting.keyActions().size(); ++i)
         row->addWidget(button(*m_adapting.keyActions()[i], keys[i].first, {}, keys[i].second));
-    connect(m_adapt.stop, &QToolButton::clicked, this,
-            [this] { m_adapting.isStopped() ? m_adapting.goOn() : m_adapting.stop(); });
-    add(*row, {Cell::rest(), m_adapt.text, m_adapt.bar, m_adapt.stop});
+    row->addStretch(1);
     return row;
 }
 
@@ -284,16 +307,13 @@ void PlayerPanel::showDock(bool shown) {
     if (dock == nullptr || dock->isHidden() == !shown) return;
     dock->setVisible(shown);
     m_shownByItself = shown;
+    auto* const window = qobject_cast<QMainWindow*>(dock->parentWidget());
+    if (shown && window != nullptr && !dock->isFloating())
+        window->resizeDocks({dock}, {minimumSizeHint().width() + 8}, Qt::Horizontal); // the curve has the rest
 }
 
 void PlayerPanel::follow(const Scene& before, const Scene& after) {
     const bool series = after.series && after.series->varies();
-    if (before.series != after.series) {
-        if (series)
-            showDock(true);
-        else if (m_shownByItself)
-            showDock(false);
-    }
     if (before.volume != after.volume)
         m_strip->setSeries(series ? after.series : nullptr, series ? after.volume->range() : ValueRange{0, 1});
     if (before.volume != after.volume || before.session.frame != after.session.frame) followPlayer();
@@ -301,6 +321,7 @@ void PlayerPanel::follow(const Scene& before, const Scene& after) {
         !before.session.targetKeys.isSame(after.session.targetKeys) || before.volume != after.volume ||
         !before.session.adapt.isSame(after.session.adapt))
         followAdapting();
+    if (before.series != after.series && (series || m_shownByItself)) showDock(series);
 }
 
 void PlayerPanel::followPlayer() {
@@ -357,7 +378,7 @@ PanelInfo playerPanel() {
             .group = PanelGroup::Time,
             .area = Qt::BottomDockWidgetArea,
             .visible = false,
-            .below = "tf",
+            .beside = "tf",
             .keys = QKeySequence("Ctrl+3"),
             .tip = QObject::tr("The frames of a series: play, step, key frames, transfer functions over time"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
@@ -365,7 +386,9 @@ PanelInfo playerPanel() {
                     {{QObject::tr("Time"), QObject::tr("Drag over the frames"), QObject::tr("go to the frame")},
                      {QObject::tr("Time"), QObject::tr("Wheel, ← and →"), QObject::tr("one frame back, forward")},
                      {QObject::tr("Time"), QObject::tr("Page up, page down"), QObject::tr("ten frames")}});
-                return new PlayerPanel(services, controllers.player, controllers.adapting, parent);
+                auto* panel = new PlayerPanel(services, controllers.player, controllers.adapting, parent);
+                if (DockTitle* const title = DockTitle::of(parent)) panel->fill(title->controls());
+                return panel;
             }};
 }
 

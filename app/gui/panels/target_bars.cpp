@@ -20,11 +20,14 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kRow = 42, kLowRow = 30;                          // height of a feature, pixels; of many features
-constexpr int kMany = 8;                                           // features that have the room of kRow each
-constexpr int kHead = 20;                                          // height of the legend
-constexpr double kName = 100, kNow = 42, kTarget = 44, kLock = 22; // widths left and right of the bars
-constexpr double kNumbers = kNow + kTarget + kLock + 8;
+constexpr double kRow = 42, kLowRow = 34;               // height of a feature, pixels; of many features
+constexpr int kMany = 8;                                // features that have the room of kRow each
+constexpr int kHead = 20;                               // height of the legend
+constexpr double kNow = 42, kTarget = 44, kLock = 22;   // widths right of the bars
+constexpr double kNumbers = kNow + kTarget + kLock + 8; // together
+constexpr double kName = 100, kNameLine = 17;           // its width left of the bars, its height above them
+constexpr double kSwatch = 10, kSwatchLeft = 10, kNameLeft = 26;
+constexpr int kWide = 340; // narrower widgets have the names above the bars
 constexpr double kVisibilityBar = 6;
 
 QString share(double value) { return QString::number(value, 'f', 3); }
@@ -94,6 +97,8 @@ void TargetBars::setReadOnly(bool on) {
 }
 
 int TargetBars::count() const { return static_cast<int>(m_store.scene().tf.features.size()); }
+bool TargetBars::hasNamesAbove() const { return width() < kWide; }
+double TargetBars::trackLeft() const { return hasNamesAbove() ? kSwatchLeft : kName; }
 double TargetBars::rowHeight() const { return count() > kMany ? kLowRow : kRow; }
 
 bool TargetBars::isHidden(int feature) const {
@@ -128,15 +133,21 @@ void TargetBars::choose(int feature) {
 }
 
 QSize TargetBars::sizeHint() const { return {320, kHead + static_cast<int>(rowHeight()) * std::max(1, count()) + 4}; }
-QSize TargetBars::minimumSizeHint() const { return {280, sizeHint().height()}; }
+QSize TargetBars::minimumSizeHint() const { return {240, sizeHint().height()}; }
 
 QRectF TargetBars::rowRect(int feature) const {
     return {0, kHead + feature * rowHeight(), static_cast<double>(width()), rowHeight()};
 }
 
 QRectF TargetBars::trackRect(int feature) const {
-    const double gap = count() > kMany ? 4 : 8;
-    return rowRect(feature).adjusted(kName, gap, -kNumbers, -gap);
+    const double gap = count() > kMany || hasNamesAbove() ? 4 : 8;
+    return rowRect(feature).adjusted(trackLeft(), hasNamesAbove() ? kNameLine : gap, -kNumbers, -gap);
+}
+
+QRectF TargetBars::nameRect(int feature) const {
+    const QRectF row = rowRect(feature), track = trackRect(feature);
+    return hasNamesAbove() ? QRectF(kNameLeft, row.top() + 1, track.right() - kNameLeft, kNameLine - 1)
+                           : QRectF(kNameLeft, row.top(), kName - kNameLeft - 6, row.height());
 }
 
 QRectF TargetBars::vwsRect(int feature) const {
@@ -380,11 +391,11 @@ void TargetBars::paintEvent(QPaintEvent*) {
     const QFontMetricsF metrics(small);
     painter.setFont(small);
     painter.setPen(theme::kFaint);
-    const double head = kHead - 4;
-    painter.drawText(QRectF(kName, 2, width() - kName - kNumbers, head), Qt::AlignLeft | Qt::AlignVCenter,
+    const double head = kHead - 4, room = width() - trackLeft() - kNumbers;
+    painter.drawText(QRectF(trackLeft(), 2, room, head), Qt::AlignLeft | Qt::AlignVCenter,
                      metrics.elidedText(terms().areScientific() ? tr("VWS (striped: by saturation); thin: visibility")
                                                                 : tr("attention (striped: by saturation); thin: seen"),
-                                        Qt::ElideRight, width() - kName - kNumbers));
+                                        Qt::ElideRight, room));
     const double left = width() - 2 - kLock - kTarget;
     painter.drawText(QRectF(left - kNow, 2, kNow, head), Qt::AlignRight | Qt::AlignVCenter, tr("now"));
     painter.drawText(QRectF(left, 2, kTarget, head), Qt::AlignRight | Qt::AlignVCenter, tr("target"));
@@ -399,22 +410,22 @@ void TargetBars::paintEvent(QPaintEvent*) {
 void TargetBars::paintRow(QPainter& painter, int i, const QFont& small, double target) {
     const auto f = static_cast<std::size_t>(i);
     const Feature& feature = m_store.scene().tf.features[f];
-    const QRectF row = rowRect(i), track = trackRect(i);
+    const QRectF row = rowRect(i), name = nameRect(i);
     painter.setPen(Qt::NoPen);
     if (i == m_current && (m_marked || hasFocus())) {
         painter.setBrush(theme::kHover);
         painter.drawRoundedRect(row.adjusted(3, 1, -3, -1), 4, 4);
     }
     const QColor color = translucent(colorFromRgb(feature.color), hasTarget(i) ? 1 : 0.35);
-    const QRectF swatch(10, track.center().y() - 5, 10, 10);
+    const QRectF swatch(kSwatchLeft, name.center().y() - kSwatch / 2, kSwatch, kSwatch);
     painter.setBrush(color);
     painter.drawRoundedRect(swatch, 2, 2);
     if (!feature.hidden) paintOutline(painter, theme::kWindow, color, swatch);
     painter.setFont(font());
     painter.setPen(hasTarget(i) ? theme::kText : theme::kFaint);
     painter.drawText(
-        QRectF(26, row.top(), kName - 32, row.height()), Qt::AlignVCenter | Qt::AlignLeft,
-        QFontMetricsF(font()).elidedText(QString::fromStdString(feature.name), Qt::ElideRight, kName - 32));
+        name, Qt::AlignVCenter | Qt::AlignLeft,
+        QFontMetricsF(font()).elidedText(QString::fromStdString(feature.name), Qt::ElideMiddle, name.width()));
     painter.setPen(Qt::NoPen);
     painter.setBrush(theme::kTrack);
     painter.drawRoundedRect(vwsRect(i), 2, 2);

@@ -58,6 +58,9 @@ protected:
 
 private:
     int count() const;
+    bool hasNamesAbove() const; ///< in a narrow panel; else the names stand left of the bars
+    double trackLeft() const;
+    QRectF nameRect(int feature) const;
     double rowHeight() const;
     QRectF trackRect(int feature) const; ///< where the bars lie
     int featureAtPosition(const QPointF& position) const;

@@ -8,6 +8,7 @@
 #include "tf/palette_bar.h"
 #include "tf/shapes.h"
 #include "tf/tf_editor_widget.h"
+#include "widgets/dock_title.h"
 
 namespace pellucid::gui {
 namespace {
@@ -28,7 +29,6 @@ PanelInfo transferFunctionPanel() {
     return {.id = "tf",
             .title = QObject::tr("Transfer function"),
             .area = Qt::BottomDockWidgetArea,
-            .size = 250,
             .keys = QKeySequence("Ctrl+1"),
             .tip = QObject::tr("The curve of opacity and colour over the histogram"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
@@ -36,7 +36,8 @@ PanelInfo transferFunctionPanel() {
                 QObject::connect(&services, &Services::readOnlyChanged, editor,
                                  [editor, &services] { editor->setReadOnly(services.isReadOnly()); });
                 addGhostLayer(controllers.refining, editor->canvas());
-                editor->addRow(new PaletteBar(services, controllers.refining, editor->canvas(), editor));
+                new PaletteBar(services, controllers.refining, editor->canvas());
+                if (DockTitle* const title = DockTitle::of(parent)) editor->fill(title->controls());
                 followTitle(services, parent, curveTitle);
                 QObject::connect(&editor->canvas(), &TfCanvas::menuOpening, editor,
                                  [&services, &features = controllers.features](QMenu& menu, double, FeatureId id) {

@@ -23,6 +23,7 @@
 #include "volume/file_contents.h"
 #include "volume/procedural.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
@@ -181,6 +182,7 @@ VariablesPanel::VariablesPanel(Services& services, OpenController& opening, QWid
 void VariablesPanel::makeList() {
     m_list->setColumnCount(kColumns);
     m_list->setHeaderLabels({tr("Variable"), tr("Drives"), tr("From"), tr("Grid"), tr("Range")});
+    elideInTheMiddle(*m_list);
     m_list->setRootIsDecorated(false);
     m_list->setUniformRowHeights(true);
     m_list->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::DoubleClicked);

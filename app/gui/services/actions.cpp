@@ -114,7 +114,7 @@ void Actions::build(QMainWindow& window) {
         e.action->setIconVisibleInMenu(false);
         bar->addAction(e.action);
     }
-    bar->setIconSize({20, 20});
+    bar->setIconSize({18, 18});
     m_bar = bar;
     m_window = &window;
     placeBar();

@@ -14,24 +14,25 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kTop = 8, kHeight = 16; // of the colours, pixels; the marker's head is above
-constexpr double kHead = 6;              // half the width of the marker's head
+constexpr double kTop = 4;  // of the colours, pixels; the marker's head is above
+constexpr double kHead = 5; // half the width of the marker's head
 
 } // namespace
 
-PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas, QWidget* parent)
-    : QWidget(parent), m_services(services), m_refining(refining), m_canvas(canvas) {
+PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas)
+    : QWidget(&canvas), m_services(services), m_refining(refining), m_canvas(canvas) {
     setObjectName("paletteBar");
     setAccessibleName(tr("Palette"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
-    setFixedHeight(30);
     setCursor(Qt::PointingHandCursor);
     connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.series != after.series) m_dragging = false;
         if (!(before.tf == after.tf) || !(before.session.refine == after.session.refine)) update();
     });
     connect(&canvas.axis(), &IntensityAxis::changed, this, qOverload<>(&QWidget::update));
+    connect(&canvas, &TfCanvas::arranged, this, &PaletteBar::place);
+    place();
     connect(&services.selection(), &Selection::hoveredChanged, this, qOverload<>(&QWidget::update));
     const QString place = tr("Palette, below the curve");
     services.actions().addGestures({{place, tr("Click, drag"), tr("refine so that this value stands out")},
@@ -39,9 +40,14 @@ PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas&
                                     {place, tr("Delete, Esc, right click"), tr("clear the priority")}});
 }
 
+void PaletteBar::place() {
+    const QRectF strip = m_canvas.strip();
+    setGeometry(0, static_cast<int>(strip.top()), m_canvas.width(), static_cast<int>(strip.height()));
+}
+
 QRectF PaletteBar::strip() const {
-    const QRectF plot = m_canvas.plot(); // of a canvas that begins where this does
-    return {plot.left(), kTop, plot.width(), kHeight};
+    const QRectF strip = m_canvas.strip(); // of a canvas that begins where this does
+    return {strip.left(), kTop, strip.width(), height() - kTop};
 }
 
 QPointF PaletteBar::positionOf(double intensity) const {

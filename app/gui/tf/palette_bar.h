@@ -17,14 +17,11 @@ class Services;
 class PaletteBar : public QWidget {
     Q_OBJECT
 public:
-    /// Lies below `canvas`, as wide, and follows its axis.
-    PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas, QWidget* parent = nullptr);
+    /// Lies in the canvas, in its strip(), and follows its axis.
+    PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas);
 
     /// The middle of the place of an intensity, widget pixels.
     QPointF positionOf(double intensity) const;
-
-    QSize sizeHint() const override { return {300, 30}; }
-    QSize minimumSizeHint() const override { return {100, 30}; }
 
 protected:
     void paintEvent(QPaintEvent* event) override;
@@ -37,7 +34,8 @@ protected:
     bool event(QEvent* event) override;
 
 private:
-    QRectF strip() const;
+    void place();
+    QRectF strip() const; ///< of the colours
     double intensityAt(const QPointF& position) const;
     QString valueText(double intensity) const;
     std::optional<double> marked() const;

@@ -179,6 +179,16 @@ QRectF TfCanvas::plot() const {
             std::max(1.0, height() - layout::kTop - layout::kBottom)};
 }
 
+QRectF TfCanvas::strip() const {
+    const QRectF r = plot();
+    return {r.left(), r.bottom() + 2, r.width(), layout::kStrip};
+}
+
+void TfCanvas::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    Q_EMIT arranged();
+}
+
 QRectF TfCanvas::overviewTrack() const {
     const QRectF r = plot();
     return {r.left(), height() - layout::kOverview - 1, r.width(), layout::kOverview};

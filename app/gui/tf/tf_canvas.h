@@ -23,12 +23,12 @@ class QMenu;
 namespace pellucid::gui {
 
 namespace layout { // pixels
-// Around the plot. Above it: the line of words, the features' bars. Below it: colours, labels, what part is seen.
-inline constexpr double kLeft = 46, kRight = 14, kTop = 34, kBottom = 33;
+// Around the plot. Above it: the features' bars. Below it: colours, labels, what part is seen.
+inline constexpr double kLeft = 46, kRight = 14, kTop = 18, kBottom = 36;
 inline constexpr double kGradientAxis = 56; ///< right of the plot, in place of kRight
-inline constexpr double kTopLine = 15;      ///< height of the line of words
+inline constexpr double kTopLine = 15;      ///< height of the line of words at the top of the plot
 inline constexpr double kBar = 14;          ///< of the features' bars
-inline constexpr double kStrip = 7;         ///< of the strip of colours
+inline constexpr double kStrip = 15;        ///< of the colours
 inline constexpr double kOverview = 4;      ///< of the bar that shows which part is seen
 
 } // namespace layout
@@ -61,6 +61,7 @@ public:
     // Where things of the plane (intensity, opacity) are drawn, widget pixels.
     QPointF positionOf(double x, double opacity) const;
     QRectF plot() const;
+    QRectF strip() const; ///< for the colours along the axis, below the plot
     IntensityAxis& axis() { return m_axis; }
     /// A curve behind the curve, null: none; asked whenever the canvas is painted. Who sets it calls update() when it
     /// is another one.
@@ -72,10 +73,11 @@ public:
     /// A histogram is being counted that will be shown.
     bool isCounting() const { return m_counts.isBusy(); }
 
-    QSize sizeHint() const override { return {640, 190}; }
-    QSize minimumSizeHint() const override { return {300, 130}; }
+    QSize sizeHint() const override { return {640, 180}; }
+    QSize minimumSizeHint() const override { return {300, 110}; }
 
 Q_SIGNALS:
+    void arranged(); ///< plot() and strip() may be others
     /// The selected points, or which of them is the current one.
     void selectionChanged(int current);
     /// A context menu is about to open at an intensity, which is the hovered one while it is open; `feature` 0: none
@@ -84,6 +86,7 @@ Q_SIGNALS:
 
 protected:
     void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;

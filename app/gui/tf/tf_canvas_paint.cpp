@@ -72,6 +72,7 @@ void TfCanvas::paintEvent(QPaintEvent*) {
         paintHistogram(painter);
         paintVisibility(painter);
     });
+    paintTopLine(painter); // behind all that is taken hold of
     paintAxes(painter);
     paintFeatures(painter);
     clipped([&] {
@@ -85,7 +86,6 @@ void TfCanvas::paintEvent(QPaintEvent*) {
         painter.setBrush(translucent(theme::kAccent, 0.12));
         painter.drawRect(QRectF(m_drag->pressed, m_drag->last).normalized().intersected(r));
     }
-    paintTopLine(painter);
 }
 
 void TfCanvas::paintJointHistogram(QPainter& painter) {
@@ -94,8 +94,6 @@ void TfCanvas::paintJointHistogram(QPainter& painter) {
     const JointHistogram* const joint = m_counts.joint(true);
     if (joint == nullptr) {
         m_jointImage = {};
-        painter.setPen(theme::kFaint);
-        if (m_counts.isBusy()) painter.drawText(r.adjusted(0, 4, -8, 0), Qt::AlignRight, tr("counting gradients…"));
         return;
     }
     if (m_jointImage.isNull()) {
@@ -195,7 +193,7 @@ void TfCanvas::paintAxes(QPainter& painter) const {
     const Volume& volume = *m_store.scene().volume;
     const double lo = volume.valueOfIntensity(m_axis.lo()), hi = volume.valueOfIntensity(m_axis.hi());
     painter.setPen(theme::kFaint);
-    const double labelTop = r.bottom() + layout::kStrip + 7;
+    const double ticksTop = strip().bottom(), labelTop = ticksTop + 2;
     if (hi > lo) {
         for (const double value : axisTicks(lo, hi, std::max(2, static_cast<int>(r.width() / 80)))) {
             const double x = r.left() + (value - lo) / (hi - lo) * r.width();
@@ -203,7 +201,7 @@ void TfCanvas::paintAxes(QPainter& painter) const {
             const double w = metrics.horizontalAdvance(text);
             const double left = std::clamp(x - w / 2, layout::kLeft - 12, std::max(layout::kLeft, width() - w - 2));
             painter.drawText(QRectF(left, labelTop, w + 2, metrics.height()), Qt::AlignLeft, text);
-            painter.drawLine(QPointF(x, r.bottom() + layout::kStrip + 3), QPointF(x, r.bottom() + layout::kStrip + 6));
+            painter.drawLine(QPointF(x, ticksTop), QPointF(x, ticksTop + 3));
         }
     } else { // a constant volume has one value, which is intensity 0
         painter.drawText(QRectF(r.left(), labelTop, r.width(), metrics.height()), Qt::AlignLeft, numberText(lo, 0));
@@ -225,8 +223,7 @@ void TfCanvas::paintAxes(QPainter& painter) const {
         painter.drawText(QRectF(0, y - metrics.height() / 2, layout::kLeft - 6, metrics.height()),
                          Qt::AlignRight | Qt::AlignVCenter, QString::number(opacity));
     }
-    painter.drawText(QRectF(3, 1, layout::kLeft + 10, layout::kTopLine), Qt::AlignLeft | Qt::AlignVCenter,
-                     tr("opacity"));
+    painter.drawText(QRectF(0, 1, layout::kLeft - 4, layout::kBar), Qt::AlignRight | Qt::AlignVCenter, tr("opacity"));
 }
 
 void TfCanvas::paintOverview(QPainter& painter) const {
@@ -262,7 +259,7 @@ void TfCanvas::paintFeatures(QPainter& painter) const {
         painter.drawRoundedRect(bar.adjusted(0.5, 0.5, -0.5, -0.5), 3, 3);
         painter.setPen(f.hidden ? theme::kFaint : readableOn(color));
         const QString name =
-            QFontMetricsF(font).elidedText(QString::fromStdString(f.name), Qt::ElideRight, bar.width() - 6);
+            QFontMetricsF(font).elidedText(QString::fromStdString(f.name), Qt::ElideMiddle, bar.width() - 6);
         painter.drawText(bar, Qt::AlignCenter, name);
         if (hovered && m_hoveredBar->part != Part::Middle) { // the end that would be grabbed
             const double x = m_axis.toPixel(m_hoveredBar->part == Part::Lower ? f.a : f.b, r);
@@ -289,8 +286,6 @@ void TfCanvas::paintCurve(QPainter& painter) const {
     area.closeSubpath();
     painter.fillPath(area, colorsAlong(tf(), m_axis, r, m_showJoint ? 0.15 : 0.3));
     painter.strokePath(line, QPen(theme::kCurve, 1.6));
-    painter.setClipping(false);
-    painter.fillRect(QRectF(r.left(), r.bottom() + 3, r.width(), layout::kStrip - 2), colorsAlong(tf(), m_axis, r, 1));
 }
 
 void TfCanvas::paintHair(QPainter& painter) const {
@@ -299,7 +294,7 @@ void TfCanvas::paintHair(QPainter& painter) const {
     const QRectF r = plot();
     const QPointF at = positionOf(*x, tf().opacity(*x));
     painter.setPen(QPen(translucent(theme::kText, 0.5), 1));
-    painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom() + layout::kStrip + 2));
+    painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom()));
     painter.setPen(Qt::NoPen);
     painter.setBrush(theme::kText);
     painter.drawEllipse(at, 2.5, 2.5);
@@ -347,15 +342,19 @@ void TfCanvas::paintPoints(QPainter& painter) const {
 void TfCanvas::paintTopLine(QPainter& painter) const {
     const QRectF r = plot();
     const QFontMetricsF metrics(smallFont());
-    double right = width() - layout::kRight;
+    const auto write = [&](double left, const QString& text, const QColor& color) {
+        const QRectF box(left, r.top() + 1, metrics.horizontalAdvance(text) + 2, layout::kTopLine);
+        painter.fillRect(box.adjusted(-3, 0, 3, 0), translucent(theme::kPanel, 0.75)); // the histogram may be behind
+        painter.setPen(color);
+        painter.drawText(box, Qt::AlignLeft | Qt::AlignVCenter, text);
+    };
+    double right = r.right() - 4;
     if (r.width() > kLegendFrom) {
         const auto entry = [&](const QString& text, const QBrush& brush, bool line) {
-            const double w = metrics.horizontalAdvance(text);
-            right -= w;
-            painter.setPen(theme::kFaint);
-            painter.drawText(QRectF(right, 1, w + 2, layout::kTopLine), Qt::AlignLeft | Qt::AlignVCenter, text);
+            right -= metrics.horizontalAdvance(text);
+            write(right, text, theme::kFaint);
             right -= 18;
-            painter.fillRect(QRectF(right, line ? 8 : 4, 14, line ? 2 : 9), brush);
+            painter.fillRect(QRectF(right, r.top() + (line ? 8 : 4), 14, line ? 2 : 9), brush);
             right -= 10;
         };
         if (m_showJoint) {
@@ -363,19 +362,19 @@ void TfCanvas::paintTopLine(QPainter& painter) const {
             heat.setCoordinateMode(QGradient::ObjectMode);
             heat.setColorAt(0, theme::kPanel);
             heat.setColorAt(1, theme::kAccent);
-            entry(tr("value × gradient"), heat, false);
+            entry(m_counts.joint(false) == nullptr ? tr("counting gradients…") : tr("value × gradient"), heat, false);
         }
         if (m_results.measures() != nullptr)
             entry(tr("visible"), translucent(visibleColor(), m_results.measuresAreCurrent() ? 1 : 0.4), true);
         entry(tr("voxels"), theme::kHistogram, false);
     }
-    const double left = layout::kLeft + 14;
+    const double left = r.left() + 14;
     const QString told = readout();
-    painter.setPen(told.isEmpty() ? theme::kFaint : theme::kText);
     const QString text =
         told.isEmpty() && m_points.isEmpty() ? tr("double-click: add a point  ·  drag: select  ·  wheel: zoom") : told;
-    painter.drawText(QRectF(left, 1, std::max(0.0, right - left), layout::kTopLine), Qt::AlignLeft | Qt::AlignVCenter,
-                     metrics.elidedText(text, Qt::ElideRight, right - left));
+    if (!text.isEmpty() && right > left)
+        write(left, metrics.elidedText(text, Qt::ElideRight, right - left),
+              told.isEmpty() ? theme::kFaint : theme::kText);
 }
 
 } // namespace pellucid::gui

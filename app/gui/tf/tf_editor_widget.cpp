@@ -1,16 +1,20 @@
 #include "tf/tf_editor_widget.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
+#include <QActionGroup>
 #include <QCheckBox>
 #include <QLineEdit>
+#include <QMenu>
 #include <QPainter>
 #include <QSettings>
 #include <QSignalBlocker>
 
 #include "store/edits.h"
 #include "widgets/controls.h"
+#include "widgets/fitting_row.h"
 #include "widgets/layouts.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
@@ -35,7 +39,7 @@ QIcon swatch(const QColor& color) {
 
 TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, Selection& selection, QWidget* parent)
     : QWidget(parent), m_store(store), m_canvas(new TfCanvas(store, results, selection, this)),
-      m_column(inset(new QVBoxLayout(this), {0, 2, 0, 6})), m_which(named(new QLabel(this), "pointLabel")),
+      m_which(named(new QLabel(this), "pointLabel")),
       m_value(named(new QDoubleSpinBox(this), "pointValue",
                     tr("Where the points lie, in the units of the data; empty where they differ"))),
       m_opacity(named(new QDoubleSpinBox(this), "pointOpacity",
@@ -43,17 +47,17 @@ TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, Selection&
       m_color(named(new QToolButton(this), "pointColor", tr("Colour of the points (Enter)"))),
       m_fixed(
           named(new QCheckBox(tr("Fixed"), this), "pointFixed", tr("Refinement leaves fixed points alone (Space)"))),
-      m_remove(named(toolButton(tr("Remove"), this), "pointRemove", tr("Remove the points (Delete)"))) {
+      m_remove(named(toolButton(tr("Remove"), this), "pointRemove", tr("Remove the points (Delete)"))),
+      m_plot(named(menuButton(tr("Plot"), this), "plotMenuButton",
+                   tr("Height of the histograms, gradients behind the curve, scale of the opacities"))) {
     setObjectName("tfEditor");
-    withAnyWidth(m_which); // gives way in a narrow window
-    // Of one width whatever the range: a selection must not change the layout, and with it the picture's size.
+    // Of one width whatever the range: a selection must not move what stands beside.
     m_value->setFixedWidth(QFontMetrics(font()).horizontalAdvance("-00000.00") + 34);
     m_value->setKeyboardTracking(false);
     withLook(m_opacity, {.decimals = 4, .step = 0.01});
     m_color->setIconSize(kSwatch);
-    m_column->setSpacing(4);
-    m_column->addWidget(m_canvas, 1);
-    m_column->addLayout(makeRow());
+    fillPlotMenu(*m_plot->menu());
+    setLayout(inset(columnOf({m_canvas}), {0, 2, 0, 2}));
 
     connect(m_canvas, &TfCanvas::selectionChanged, this, [this] {
         ++m_editSession;
@@ -74,42 +78,67 @@ TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, Selection&
     showPoints();
 }
 
-QHBoxLayout* TfEditorWidget::makeRow() {
-    auto* scale =
-        named(new QComboBox(this), "histogramScale",
-              tr("Height of the histograms: logarithm of the number of voxels, the number,\n"
-                 "or the number up to the 99.5th percentile, so that one huge bin does not flatten the rest"));
-    scale->addItems({tr("Log"), tr("Linear"), tr("Percentile")}); // as HistogramScale
-    connect(scale, &QComboBox::currentIndexChanged, m_canvas,
-            [this](int index) { m_canvas->setHistogramScale(static_cast<HistogramScale>(index)); });
-    connect(scale, &QComboBox::activated, this, [](int index) { QSettings().setValue(kScaleKey, index); });
-    scale->setCurrentIndex(std::clamp(QSettings().value(kScaleKey, 0).toInt(), 0, scale->count() - 1));
-    auto* gradients = named(new QCheckBox(tr("Gradients"), this), "jointHistogram",
-                            tr("Behind the curve: how often values (to the right) meet gradient magnitudes (up).\n"
-                               "Materials lie at the bottom; arcs are borders between two materials"));
-    connect(gradients, &QCheckBox::toggled, m_canvas, &TfCanvas::setJointHistogramShown);
-    auto* fine = named(new QCheckBox(tr("Fine opacity"), this), "fineOpacityAxis",
-                       tr("Height shows the cube root of the opacity: fine control near zero, where\n"
-                          "most of the effect lies (opacity of a path one voxel long, d0)"));
-    connect(fine, &QCheckBox::toggled, m_canvas, &TfCanvas::setFineOpacityAxis);
-    connect(fine, &QCheckBox::clicked, this, [](bool on) { QSettings().setValue(kFineKey, on); });
+void TfEditorWidget::fillPlotMenu(QMenu& menu) {
+    auto* scales = new QActionGroup(&menu);
+    const int kept = QSettings().value(kScaleKey, 0).toInt();
+    const std::tuple<HistogramScale, const char*, QString, QString> heights[] = {
+        {HistogramScale::Log, "histogramLog", tr("&Logarithm of the number of voxels"),
+         tr("Height of the histograms: rare values are seen beside frequent ones")},
+        {HistogramScale::Linear, "histogramLinear", tr("&Number of voxels"),
+         tr("Height of the histograms: twice as many voxels, twice as high")},
+        {HistogramScale::Percentile, "histogramPercentile", tr("Number, most frequent values &cut off"),
+         tr("Height of the histograms: the number up to the 99.5th percentile,\n"
+            "so that one huge bin does not flatten the rest")}};
+    const auto check = [&](const char* id, const QString& text, const QString& tip, bool on) {
+        QAction* const action = menu.addAction(text);
+        action->setObjectName(id);
+        action->setToolTip(tip);
+        action->setCheckable(true);
+        action->setChecked(on);
+        return action;
+    };
+    for (const auto& [scale, id, text, tip] : heights) {
+        QAction* const action = check(id, text, tip, static_cast<int>(scale) == kept);
+        scales->addAction(action);
+        connect(action, &QAction::triggered, this, [this, scale = scale] {
+            m_canvas->setHistogramScale(scale);
+            QSettings().setValue(kScaleKey, static_cast<int>(scale));
+        });
+        if (action->isChecked()) m_canvas->setHistogramScale(scale);
+    }
+    menu.addSeparator();
+    QAction* const gradients = check("jointHistogram", tr("&Gradients behind the curve"),
+                                     tr("How often values (to the right) meet gradient magnitudes (up).\n"
+                                        "Materials lie at the bottom; arcs are borders between two materials"),
+                                     false);
+    connect(gradients, &QAction::toggled, m_canvas, &TfCanvas::setJointHistogramShown);
     const bool isFine = QSettings().value(kFineKey, true).toBool();
+    QAction* const fine = check("fineOpacityAxis", tr("&Fine scale of low opacities"),
+                                tr("Height shows the cube root of the opacity: fine control near zero, where\n"
+                                   "most of the effect lies (opacity of a path one voxel long, d0)"),
+                                isFine);
     m_canvas->setFineOpacityAxis(isFine);
-    fine->setChecked(isFine);
-    return inset(rowOf({{m_which, 1},
-                        new QLabel(tr("Value"), this),
-                        m_value,
-                        new QLabel(tr("Opacity"), this),
-                        m_opacity,
-                        m_color,
-                        m_fixed,
-                        m_remove,
-                        Cell::gap(6),
-                        scale,
-                        gradients,
-                        fine},
-                       6),
-                 {10, 0, 10, 0});
+    connect(fine, &QAction::toggled, m_canvas, &TfCanvas::setFineOpacityAxis);
+    connect(fine, &QAction::triggered, this, [](bool on) { QSettings().setValue(kFineKey, on); });
+}
+
+void TfEditorWidget::fill(FittingRow& row) {
+    const auto word = [this](const QString& text, QWidget* of) {
+        auto* label = new QLabel(text, this);
+        label->setToolTip(of->toolTip());
+        return label;
+    };
+    enum Rank { Numbers, Color, Plot, Fixed, Remove, Words, Which }; // what a narrow window leaves out last … first
+    row.add(m_which, Which);
+    row.add(word(tr("Value"), m_value), Words);
+    row.add(m_value, Numbers);
+    row.add(word(tr("Opacity"), m_opacity), Words);
+    row.add(m_opacity, Numbers);
+    row.add(m_color, Color);
+    row.add(m_fixed, Fixed);
+    row.add(m_remove, Remove);
+    row.addGap();
+    row.add(m_plot, Plot);
 }
 
 void TfEditorWidget::setReadOnly(bool on) {
@@ -117,8 +146,6 @@ void TfEditorWidget::setReadOnly(bool on) {
     m_canvas->setReadOnly(on);
     showPoints();
 }
-
-void TfEditorWidget::addRow(QWidget* row) { m_column->insertWidget(++m_rows, row); }
 
 void TfEditorWidget::showPoints() {
     const PointSelection& chosen = m_canvas->selectedPoints();

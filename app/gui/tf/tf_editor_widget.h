@@ -7,12 +7,13 @@
 
 class QCheckBox;
 class QDoubleSpinBox;
-class QHBoxLayout;
 class QLabel;
+class QMenu;
 class QToolButton;
-class QVBoxLayout;
 
 namespace pellucid::gui {
+
+class FittingRow;
 
 class TfEditorWidget : public QWidget {
     Q_OBJECT
@@ -21,24 +22,23 @@ public:
 
     TfCanvas& canvas() { return *m_canvas; }
     void setReadOnly(bool on);
-    /// A row of its own right below the canvas, such as what is drawn along the same axis.
-    void addRow(QWidget* row);
+    /// Puts the numbers of the selected points and the menu of the plot into a row around the editor.
+    void fill(FittingRow& row);
 
 private:
-    QHBoxLayout* makeRow();
+    void fillPlotMenu(QMenu& menu);
     void showPoints();
     void editPoints(const QDoubleSpinBox& box);
 
     SessionStore& m_store;
     TfCanvas* m_canvas;
-    QVBoxLayout* m_column;
-    int m_rows = 0; ///< below the canvas
     QLabel* m_which;
     QDoubleSpinBox* m_value;
     QDoubleSpinBox* m_opacity;
     QToolButton* m_color;
     QCheckBox* m_fixed; ///< partly checked: some of them are
     QToolButton* m_remove;
+    QToolButton* m_plot; ///< with a menu
     bool m_readOnly = false;
     const QDoubleSpinBox* m_typed = nullptr; ///< typed into, not yet taken
     int m_editSession = 0;                   ///< so that the steps of one stay at a point become one undo step

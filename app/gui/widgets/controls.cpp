@@ -13,7 +13,8 @@ QToolButton* toolButton(const QString& text, QWidget* parent) {
 }
 
 QToolButton* menuButton(const QString& text, QWidget* parent) {
-    QToolButton* button = toolButton(text, parent);
+    QToolButton* button = toolButton(text + QStringLiteral(" ▾"), parent);
+    button->setStyleSheet("QToolButton::menu-indicator { image: none; }"); // the text has one
     button->setPopupMode(QToolButton::InstantPopup);
     auto* menu = new QMenu(button);
     menu->setToolTipsVisible(true);

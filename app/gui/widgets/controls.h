@@ -16,7 +16,7 @@ class QEvent;
 namespace pellucid::gui {
 
 QToolButton* toolButton(const QString& text, QWidget* parent);
-/// A press opens its menu, button->menu(), which shows the tool tips of its entries.
+/// A press opens its menu, button->menu(), as an arrow after the text says, which shows the tool tips of its entries.
 QToolButton* menuButton(const QString& text, QWidget* parent);
 
 /// A text of several lines.

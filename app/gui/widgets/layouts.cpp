@@ -31,8 +31,13 @@ void fillScrolled(QWidget* panel, QLayout* content) {
     panel->setLayout(inset(columnOf({scroll}), {}));
 }
 
+QFormLayout* narrowForm(QFormLayout* form) {
+    form->setRowWrapPolicy(QFormLayout::WrapLongRows);
+    return form;
+}
+
 QFormLayout* scrolledForm(QWidget* panel, int spacing) {
-    auto* form = new QFormLayout;
+    auto* form = narrowForm(new QFormLayout);
     form->setVerticalSpacing(spacing);
     fillScrolled(panel, form);
     return form;

@@ -42,9 +42,12 @@ L* inset(L* layout, const QMargins& margins) {
     return layout;
 }
 
+/// In a narrow panel a control of the form stands below its label where there is no room beside it. Returns the form.
+QFormLayout* narrowForm(QFormLayout* form);
+
 /// Fills `panel`, which has no layout yet, with `content`, scrolled where there is no room for all of it.
 void fillScrolled(QWidget* panel, QLayout* content);
-/// The same with an empty form, to be filled.
+/// The same with an empty narrowForm(), to be filled.
 QFormLayout* scrolledForm(QWidget* panel, int spacing);
 /// The size at which a panel made by these two does not scroll.
 QSize sizeWithoutScrolling(const QWidget& panel);

@@ -63,6 +63,12 @@ public:
         return QProxyStyle::styleHint(hint, option, widget, returned);
     }
 
+    /// Tool bars without a rim: their room is the picture's.
+    int pixelMetric(PixelMetric metric, const QStyleOption* option, const QWidget* widget) const override {
+        if (metric == PM_ToolBarItemMargin || metric == PM_ToolBarFrameWidth) return 0;
+        return QProxyStyle::pixelMetric(metric, option, widget);
+    }
+
     void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                        const QWidget* widget) const override {
         if (element == PE_PanelButtonCommand && option->state.testFlag(State_On) &&
@@ -146,14 +152,13 @@ QPalette paletteOf(bool light) {
 QString styleSheetOf(bool light) {
     const QColor& separator = light ? theme::kTitle : theme::kPanel;
     return QStringLiteral("QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
-                          "QDockWidget::title { background: %4; padding: 5px 8px; }"
-                          "QMainWindow::separator { background: %5; width: 4px; height: 4px; }"
-                          "QMainWindow::separator:hover { background: %6; }")
-               .arg(theme::kText.name(), theme::kRaised.name(), theme::kLine.name(), theme::kTitle.name(),
-                    separator.name(), theme::kAccent.name()) +
+                          "QMainWindow::separator { background: %4; width: 4px; height: 4px; }"
+                          "QMainWindow::separator:hover { background: %5; }")
+               .arg(theme::kText.name(), theme::kRaised.name(), theme::kLine.name(), separator.name(),
+                    theme::kAccent.name()) +
            QStringLiteral("QStatusBar::item { border: none; }"
                           "QStatusBar QLabel { color: %1; padding: 0 6px; }"
-                          "#noticeBar { background: %2; border: none; border-bottom: 1px solid %3; }"
+                          "#noticeBar { background: %2; border: 1px solid %3; border-radius: 4px; }"
                           "#noticeBar QLabel { color: %4; }"
                           "QHeaderView::section { background: %5; color: %1; border: none; padding: 3px 6px; }"
                           "QTableView { border: none; gridline-color: %5; }")

@@ -26,6 +26,7 @@
 #include "view/region_layer.h"
 #include "view/ruler_layer.h"
 #include "view/saliency_layer.h"
+#include "widgets/dock_title.h"
 #include "widgets/layouts.h"
 #include "widgets/named.h"
 #include "widgets/scrolled.h"
@@ -75,7 +76,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     setDockNestingEnabled(true);
     auto* middle = new QWidget(this);
     m_row->addWidget(m_views, 1);
-    middle->setLayout(inset(columnOf({new NoticeBar(m_services->notices(), middle), {m_row, 1}}, 0), {}));
+    middle->setLayout(inset(m_row, {}));
+    new NoticeBar(m_services->notices(), middle);
     setCentralWidget(middle);
 
     m_view->overlay().add(std::make_unique<SaliencyLayer>(m_controllers->pictureSaliency, m_view->overlay()));
@@ -136,6 +138,7 @@ void MainWindow::addPanels() {
     for (const PanelInfo& panel : panels) {
         auto* dock = new QDockWidget(panel.title, this);
         dock->setObjectName(QString(panel.id) + "Dock");
+        dock->setTitleBarWidget(new DockTitle(*dock));
         dock->setWidget(new DockScroll(panel.make(*m_services, *m_controllers, dock), panel.area));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
@@ -145,11 +148,12 @@ void MainWindow::addPanels() {
             tabifyDockWidget(beside, dock);
             beside->raise();
         }
-        if (panel.below != nullptr) splitDockWidget(m_services->panels().dock(panel.below), dock, Qt::Vertical);
+        if (panel.beside != nullptr) splitDockWidget(m_services->panels().dock(panel.beside), dock, Qt::Horizontal);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         m_services->panels().add(panel.id, *dock);
     }
+    m_services->panels().dock("features")->raise();
     addPanelActions(panels);
     m_room->panelsAdded();
     connect(&m_services->panels(), &Panels::visibilityChanged, &m_services->actions(), &Actions::refresh);
@@ -236,6 +240,11 @@ void MainWindow::updateTitle() {
 void MainWindow::changeEvent(QEvent* event) {
     QMainWindow::changeEvent(event);
     if (event->type() == QEvent::PaletteChange) m_services->actions().refresh(); // the theme, perhaps by another window
+}
+
+void MainWindow::showEvent(QShowEvent* event) {
+    QMainWindow::showEvent(event);
+    m_room->shown();
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

@@ -1,11 +1,19 @@
 #include "window/notice_bar.h"
 
+#include <algorithm>
+
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QPushButton>
 
 #include "widgets/controls.h"
 
 namespace pellucid::gui {
+namespace {
+
+constexpr int kMargin = 8, kMostWidth = 720; // logical pixels
+
+}
 
 NoticeBar::NoticeBar(Notices& notices, QWidget* parent)
     : QFrame(parent), m_notices(notices), m_label(wrappedLabel("noticeText", this)), m_rows(new QVBoxLayout) {
@@ -16,12 +24,36 @@ NoticeBar::NoticeBar(Notices& notices, QWidget* parent)
     close->setAutoRaise(true);
     connect(close, &QToolButton::clicked, &m_notices, &Notices::clear);
     auto* row = new QHBoxLayout(this);
-    row->setContentsMargins(12, 5, 6, 5);
+    row->setContentsMargins(12, 4, 4, 4);
     row->addWidget(m_label, 1);
     row->addLayout(m_rows);
     row->addWidget(close, 0, Qt::AlignTop);
     connect(&notices, &Notices::changed, this, &NoticeBar::refresh);
+    parent->installEventFilter(this);
     refresh();
+}
+
+bool NoticeBar::event(QEvent* event) {
+    if (event->type() == QEvent::LayoutRequest) place();
+    return QFrame::event(event);
+}
+
+bool NoticeBar::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::Resize) place();
+    return QFrame::eventFilter(watched, event);
+}
+
+void NoticeBar::place() {
+    const int room = parentWidget()->width() - 2 * kMargin;
+    // As wide as the longest line, as far as there is room.
+    const int around = sizeHint().width() - m_label->sizeHint().width();
+    int longest = 0;
+    for (const QString& line : m_label->text().split('\n'))
+        longest = std::max(longest, m_label->fontMetrics().horizontalAdvance(line) + 8);
+    const int width = std::min({room, kMostWidth, around + longest});
+    const int height = layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(width) : sizeHint().height();
+    setGeometry((parentWidget()->width() - width) / 2, parentWidget()->height() - height - kMargin, width, height);
+    raise();
 }
 
 void NoticeBar::refresh() {
@@ -45,6 +77,7 @@ void NoticeBar::refresh() {
     }
     m_label->setText(texts.join('\n'));
     setVisible(!texts.isEmpty());
+    place();
 }
 
 } // namespace pellucid::gui

@@ -1,4 +1,4 @@
-// Remarks about what is open, above the picture, until dismissed.
+// Remarks about what is open, over the lower edge of the picture, until dismissed.
 #pragma once
 
 #include <QFrame>
@@ -10,13 +10,19 @@ class QVBoxLayout;
 
 namespace pellucid::gui {
 
+/// Lies over its parent, which keeps its size: a picture is not drawn anew because there is something to say.
 class NoticeBar : public QFrame {
     Q_OBJECT
 public:
-    explicit NoticeBar(Notices& notices, QWidget* parent = nullptr);
+    explicit NoticeBar(Notices& notices, QWidget* parent);
+
+protected:
+    bool event(QEvent* event) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
     void refresh();
+    void place();
 
     Notices& m_notices;
     QLabel* m_label;     // the notices that nothing can be done about, and the texts of all

@@ -1,5 +1,6 @@
 #include "window/room.h"
 
+#include <algorithm>
 #include <initializer_list>
 #include <iterator>
 #include <utility>
@@ -12,17 +13,26 @@
 #include <QStatusBar>
 #include <QToolBar>
 
+#include "jobs/rest_timer.h"
 #include "panels/target_bars.h"
 #include "services/services.h"
 #include "store/view_edits.h"
 #include "view/volume_view.h"
 #include "widgets/named.h"
+#include "widgets/scrolled.h"
 
 namespace pellucid::gui {
 namespace {
 
 constexpr int kBarsWidth = 300;   // logical pixels
-constexpr int kLayoutVersion = 2; // of what saveState() writes: another one where docks or tool bars have become others
+constexpr int kLayoutVersion = 3; // of what saveState() writes: another one where docks or tool bars have become others
+
+// What the docks take of the window at first, logical pixels: as little as they can be used with, more of a large one.
+constexpr int kLeastBeside = 284, kMostBeside = 360;
+constexpr double kBeside = 0.22; // of the width
+constexpr int kLeastBelow = 203, kMostBelow = 300;
+constexpr double kBelow = 0.25; // of the height
+constexpr int kTabs = 26;       // what a row of tabs needs
 
 struct TaskText {
     Task task;
@@ -89,8 +99,12 @@ void Room::panelsAdded() {
 void Room::restore() {
     const QSettings settings;
     m_window.restoreGeometry(settings.value("geometry").toByteArray());
-    m_window.restoreState(settings.value("windowState").toByteArray(), kLayoutVersion);
+    m_arranged = m_window.restoreState(settings.value("windowState").toByteArray(), kLayoutVersion);
     m_task = findNamed<Task>(settings.value("task").toString().toStdString()).value_or(Task::Explore);
+}
+
+void Room::shown() {
+    if (!std::exchange(m_arranged, true)) shareOut();
 }
 
 void Room::save() {
@@ -107,6 +121,27 @@ void Room::showFirst(Task task) {
     for (QDockWidget* dock : m_window.findChildren<QDockWidget*>()) dock->hide();
     const auto wanted = textOf(task).panels;
     for (auto id = std::rbegin(wanted); id != std::rend(wanted); ++id) panels.show(*id); // the first ends up in front
+    later(this, [this] { shareOut(); });                                                 // when they have been laid out
+}
+
+void Room::shareOut() {
+    const auto share = [](double part, int of, int least, int most) {
+        return std::clamp(static_cast<int>(part * of), least, most);
+    };
+    Panels& panels = m_services.panels();
+    QDockWidget &curve = *panels.dock("tf"), &player = *panels.dock("player");
+    int beside = share(kBeside, m_window.width(), kLeastBeside, kMostBeside);
+    for (QDockWidget* dock : m_window.findChildren<QDockWidget*>())
+        if (!dock->isHidden() && m_window.dockWidgetArea(dock) == Qt::RightDockWidgetArea)
+            beside = std::max(beside, dock->widget()->minimumSizeHint().width());
+    m_window.resizeDocks({panels.dock("features")}, {beside}, Qt::Horizontal);
+    const QList<QDockWidget*> others = m_window.tabifiedDockWidgets(&curve);
+    const bool hasTabs = std::ranges::any_of(others, [](const QDockWidget* dock) { return !dock->isHidden(); });
+    m_window.resizeDocks({&curve}, {share(kBelow, m_window.height(), kLeastBelow, kMostBelow) + (hasTabs ? kTabs : 0)},
+                         Qt::Vertical);
+    if (!player.isHidden()) // no wider than it must be: the curve has the rest
+        m_window.resizeDocks({&player}, {static_cast<DockScroll*>(player.widget())->leastOfContent().width() + 8},
+                             Qt::Horizontal);
 }
 
 void Room::choose(Task task) {

@@ -29,6 +29,8 @@ public:
     /// All panels are there, as they are at the first start.
     void panelsAdded();
     void restore();
+    /// Shares out the window at its first show, unless a layout has been restored.
+    void shown();
     void save();
 
     Task task() const { return m_task; }
@@ -44,11 +46,13 @@ protected:
 
 private:
     void showFirst(Task task);
+    void shareOut();
 
     QMainWindow& m_window;
     Services& m_services;
     QHBoxLayout& m_row;
     Task m_task = Task::Explore;
+    bool m_arranged = false;         ///< the docks have the sizes that they were left with, or those of the first start
     QByteArray m_first, m_unfocused; ///< states of the docks: at the first start, and before the focus mode
     TargetBars* m_bars = nullptr;    ///< while focused
 };

@@ -34,6 +34,8 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
       m_background(named(new QLabel(&bar), "backgroundLabel")), m_progress(progressBar("backgroundProgress", &bar)),
       m_cancel(named(toolButton(tr("Cancel"), &bar), "backgroundCancel")) {
     m_progress->setMaximumSize(160, 14);
+    m_cancel->setMaximumHeight(bar.fontMetrics().height()); // no higher than the texts
+    bar.setSizeGripEnabled(false);
     bar.addWidget(m_background);
     bar.addWidget(m_progress);
     bar.addWidget(m_cancel);
