@@ -165,7 +165,7 @@ TEST_CASE("a film leaves the files beside it alone", "[cli][output-files]") {
 // Found by --help, so that an option of tomorrow is looked at, too: each that names a file and is none of those that
 // are read is given the name of the volume.
 TEST_CASE("every option that names an output refuses the volume", "[cli][output-files]") {
-    const std::set<std::string> read{"--tf", "--camera", "--session", "--ground"};
+    const std::set<std::string> read{"--tf", "--camera", "--session", "--ground", "--overlay"};
     const std::map<std::string, Words> needed{{"optimize", kTarget}, {"sequence", {"--out", "frames"}},
                                               {"space", kTarget},    {"views", {"--feature", "f1"}},
                                               {"render", {}},        {"refine", {}},

@@ -117,7 +117,7 @@ TEST_CASE("clicks beside the volume set no point, Esc gives up, drags turn the v
     QSignalSpy said(&w.services(), &Services::message);
     trigger(w, "measureDistanceAction");
     click(w.view(), {3, 3});
-    CHECK(said.back().front().toString().contains("Nothing is seen there"));
+    CHECK(said.back().front().toString().contains("There is nothing there"));
     click(w.view(), middle(w.view()));
     const Camera camera = w.document().camera();
     drag(w.view(), middle(w.view()) + QPointF(30, 0), middle(w.view()) + QPointF(90, 20));

@@ -238,7 +238,7 @@ TEST_CASE("what cannot be opened together is told", "[series]") {
     drop(w.window, {paths[0], folder.filePath("work.pellucid.json")});
     CHECK(waitFor([&] { return failed.count() == 1; }));
     CHECK(waitFor([&] { return !said.isEmpty(); }));
-    CHECK(said.contains("session is opened alone"));
+    CHECK(said.contains("session must be opened by itself"));
     CHECK(w.services().store().session() == session);
     CHECK(w.picture() == before);
 }

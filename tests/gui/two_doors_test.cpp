@@ -160,7 +160,7 @@ QString writtenTf(const QTemporaryDir& folder, const char* name, const TransferF
 TEST_CASE("samples are the same through both doors", "[doors]") {
     OpenWindow w;
     for (const SampleInfo& sample : samples()) {
-        if (sample.name.find('/') != std::string::npos) continue;             // variables of one that is looked at
+        if (sample.name.find('/') != std::string::npos) continue; // variables of one that is looked at
         // Doors are as wide for small ones, which take less time.
         const bool large = voxelCount(sample.defaultDims) > 48u * 48 * 48;
         compareDoors(w, {"sample:" + QString::fromStdString(sample.name), {}, {}, {}, {}, large ? 48 : 0});

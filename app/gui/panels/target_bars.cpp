@@ -27,7 +27,7 @@ constexpr double kNow = 42, kTarget = 44, kLock = 22;   // widths right of the b
 constexpr double kNumbers = kNow + kTarget + kLock + 8; // together
 constexpr double kName = 100, kNameLine = 17;           // its width left of the bars, its height above them
 constexpr double kSwatch = 10, kSwatchLeft = 10, kNameLeft = 26;
-constexpr int kWide = 340; // narrower widgets have the names above the bars
+constexpr int kWide = 340; // narrower widgets have the names above the bars, and others where a name needs it
 constexpr double kVisibilityBar = 6;
 
 QString share(double value) { return QString::number(value, 'f', 3); }
@@ -97,7 +97,13 @@ void TargetBars::setReadOnly(bool on) {
 }
 
 int TargetBars::count() const { return static_cast<int>(m_store.scene().tf.features.size()); }
-bool TargetBars::hasNamesAbove() const { return width() < kWide; }
+bool TargetBars::hasNamesAbove() const {
+    if (width() < kWide) return true;
+    const QFontMetricsF metrics(font());
+    return std::ranges::any_of(m_store.scene().tf.features, [&](const Feature& feature) {
+        return metrics.horizontalAdvance(QString::fromStdString(feature.name)) > kName - kNameLeft - 6;
+    });
+}
 double TargetBars::trackLeft() const { return hasNamesAbove() ? kSwatchLeft : kName; }
 double TargetBars::rowHeight() const { return count() > kMany ? kLowRow : kRow; }
 
@@ -392,10 +398,10 @@ void TargetBars::paintEvent(QPaintEvent*) {
     painter.setFont(small);
     painter.setPen(theme::kFaint);
     const double head = kHead - 4, room = width() - trackLeft() - kNumbers;
-    painter.drawText(QRectF(trackLeft(), 2, room, head), Qt::AlignLeft | Qt::AlignVCenter,
-                     metrics.elidedText(terms().areScientific() ? tr("VWS (striped: by saturation); thin: visibility")
-                                                                : tr("attention (striped: by saturation); thin: seen"),
-                                        Qt::ElideRight, room));
+    painter.drawText(
+        QRectF(trackLeft(), 2, room, head), Qt::AlignLeft | Qt::AlignVCenter,
+        metrics.elidedText(terms().areScientific() ? tr("VWS; thin: visibility") : tr("attention; thin: seen"),
+                           Qt::ElideRight, room));
     const double left = width() - 2 - kLock - kTarget;
     painter.drawText(QRectF(left - kNow, 2, kNow, head), Qt::AlignRight | Qt::AlignVCenter, tr("now"));
     painter.drawText(QRectF(left, 2, kTarget, head), Qt::AlignRight | Qt::AlignVCenter, tr("target"));

@@ -58,7 +58,7 @@ protected:
 
 private:
     int count() const;
-    bool hasNamesAbove() const; ///< in a narrow panel; else the names stand left of the bars
+    bool hasNamesAbove() const; ///< in a narrow panel, or where a name is long; else left of the bars
     double trackLeft() const;
     QRectF nameRect(int feature) const;
     double rowHeight() const;
