@@ -12,6 +12,7 @@
 #include "render/overlay.h"
 #include "render/slice.h"
 #include "render/trilinear.h"
+#include "support/picture_checks.h"
 #include "support/volumes.h"
 #include "tf/opacity.h"
 
@@ -65,18 +66,6 @@ RenderSettings transparent(int width, int height) {
     settings.background = {};
     settings.finestInD0 = 1.0 / 16;
     return settings;
-}
-
-/// Largest difference of premultiplied components.
-double distance(const Image& a, const Image& b) {
-    REQUIRE(a.rgba.size() == b.rgba.size());
-    double worst = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        const double alphaA = i % 4 == 3 ? 1 : a.rgba[i / 4 * 4 + 3], alphaB = i % 4 == 3 ? 1 : b.rgba[i / 4 * 4 + 3];
-        worst = std::max(worst,
-                         std::abs(alphaA * static_cast<double>(a.rgba[i]) - alphaB * static_cast<double>(b.rgba[i])));
-    }
-    return worst;
 }
 
 /// A volume in the reference: emission and absorption at a place of the world.

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "render/cpu/cpu_renderer.h"
 #include "render/cpu/ray_packets.h"
+#include "support/picture_checks.h"
 #include "support/volumes.h"
 
 using namespace pellucid;
@@ -19,18 +20,6 @@ RenderSettings transparent(int width, int height) {
     settings.width = width, settings.height = height;
     settings.background = {};
     return settings;
-}
-
-/// Largest difference of premultiplied components.
-double distance(const Image& a, const Image& b) {
-    REQUIRE(a.rgba.size() == b.rgba.size());
-    double worst = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        const double alphaA = i % 4 == 3 ? 1 : a.rgba[i / 4 * 4 + 3], alphaB = i % 4 == 3 ? 1 : b.rgba[i / 4 * 4 + 3];
-        worst = std::max(worst,
-                         std::abs(alphaA * static_cast<double>(a.rgba[i]) - alphaB * static_cast<double>(b.rgba[i])));
-    }
-    return worst;
 }
 
 std::shared_ptr<const Volume> rough(unsigned seed = 1) {
