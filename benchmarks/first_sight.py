@@ -14,6 +14,7 @@ Opens the built-in samples, volumes that are made up here (an outlier of 1e6, Na
                   puts the same greys on whatever it falls on; inside, since of a picture that is 85 % black no
                   object's entropy shows. Next to it the ratio for the lit picture inside the object ("lit"), and for
                   the whole picture, unlit ("whole").
+    fill          the longer side of what is drawn (alpha above 0.02), as part of the picture; wanted 80 to 95 %.
     visibility    of the two features that show most, as `measure` has it; wanted 10 % each where there are two.
 
 Ends with status 1 where something is not as wanted, unless --report is given.
@@ -35,6 +36,7 @@ except ImportError as missing:
 
 PIXELS = 256
 LEAST, MOST, RATIO, VISIBLE = 0.02, 0.98, 1.3, 0.10
+FILL = 0.8, 0.95
 
 
 def write_nrrd(path, values):
@@ -67,11 +69,23 @@ def made_up(folder):
     ct = np.clip(ct, -1024, 3071).astype("int16")
     signed = (6 * np.exp(-((x - 0.3) ** 2 + y * y + z * z) * 12) - 5 * np.exp(-((x + 0.4) ** 2 + y * y + z * z) * 14) +
               random.normal(0, 0.4, r.shape)).astype("float32")
+    # A wave that runs out from the middle, as of merging stars; directions of fibres in a head; t-values of a few spots.
+    wave = (np.sin(22 * r - 2 * np.arctan2(y, x)) * (1 - z * z) / (0.3 + r)).astype("float32")
+    head = (x / 0.7) ** 2 + (y / 0.85) ** 2 + (z / 0.75) ** 2 < 1
+    directions = np.where(head, np.sin(9 * x + 2 * y) * np.cos(7 * y * z) + random.normal(0, 0.3, r.shape), 0)
+    spots = sum(t * np.exp(-((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) * 90)
+                for t, a, b, c in ((7, 0.3, 0.2, 0.1), (6, -0.3, 0.25, 0.1), (-5, 0, -0.4, 0.3)))
+    spots = np.where(head, spots + random.normal(0, 0.8, r.shape), 0)
+    # A knee of magnetic resonance: marrow and fat are bright, compact bone and air dark, and the coil is near the skin.
+    tube = np.sqrt(x * x + y * y)
+    knee = np.select([tube > 0.8, tube > 0.7, (tube < 0.3) & (np.abs(z) > 0.04), tube < 0.36], [3, 900, 700, 40], 260)
+    knee = np.clip(knee * (0.6 + 0.6 * tube) + random.normal(0, 15, r.shape), 0, None)
     waves = (np.sin(5 * x) * np.cos(4 * y) * np.sin(6 * z + 1) + r).astype("float32")
     all_of_them = {"outlier of 1e6": outlier, "NaN in an octant": holes, "binary ball": (r < 0.7).astype("uint8"),
                    "six labels": blobs, "range of 1e-9": (1e-9 * ball + 5e-9).astype("float64"),
                    "CT with metal": ct, "two nested balls": np.select([r < 0.4, r < 0.8], [200, 90], 0).astype("uint8"),
-                   "signed map": signed, "waves": waves, "constant": np.full((32, 32, 32), 7, "uint8"),
+                   "signed map": signed, "waves": waves, "running wave": wave, "directions": directions.astype("float32"),
+                   "spots of t": spots.astype("float32"), "MR knee": knee.astype("int16"), "constant": np.full((32, 32, 32), 7, "uint8"),
                    "all NaN": np.full((16, 16, 16), np.nan, "float32")}
     result = []
     for name, values in all_of_them.items():
@@ -161,11 +175,15 @@ def look(cli, name, volume, scratch):
               "entropy": grey_entropy(unlit[inside]), "entropy of tents": grey_entropy(tents[inside]),
               "lit": grey_entropy(lit[inside]), "lit of tents": grey_entropy(lit_tents[inside]),
               "whole": grey_entropy(unlit), "whole of tents": grey_entropy(tents), "fails": []}
+    rows, columns = np.nonzero(alpha > 0.02)
+    result["fill"] = (max(np.ptp(rows), np.ptp(columns)) + 1) / PIXELS if rows.size else None
     within = alpha[inside]
     result["translucent"] = float(((within > 0.05) & (within < 0.95)).mean()) if within.size else None
     if within.size:
         if not LEAST <= result["translucent"] <= MOST:
             result["fails"].append("translucent")
+        if not FILL[0] <= result["fill"] <= FILL[1]:
+            result["fails"].append("fill")
         if result["entropy"] < RATIO * result["entropy of tents"]:
             result["fails"].append("entropy")
         if len(visible) > 1 and visible[1] < VISIBLE:
@@ -196,9 +214,9 @@ def main():
     results = []
     with tempfile.TemporaryDirectory() as folder:
         scratch = Path(folder)
-        volumes = real(options.data, scratch) + [(f"sample {n}", [f"sample:{n}"]) for n in ("disks", "shells", "knee")]
+        volumes = real(options.data, scratch) + [(f"sample {n}", [f"sample:{n}"]) for n in ("disks", "shells", "knee", "vortex", "smoke", "hurricane")]
         volumes += made_up(scratch)
-        print(f"{'volume':18}{'kind':12}{'translucent':>12}{'entropy':>9}{'tents:3':>9}{'ratio':>7}{'lit':>7}{'whole':>7}"
+        print(f"{'volume':18}{'kind':12}{'fill':>6}{'translucent':>12}{'entropy':>9}{'tents:3':>9}{'ratio':>7}{'lit':>7}{'whole':>7}"
               f"{'visible':>14}  not as wanted")
         for name, volume in volumes:
             if options.only and options.only not in name:
@@ -209,9 +227,10 @@ def main():
             def ratio(of):
                 return f"{r[of] / r[of + ' of tents']:7.2f}" if r[of + " of tents"] > 0 else "      –"
 
+            fill = "–" if r["fill"] is None else f"{100 * r['fill']:.0f} %"
             translucent = "–" if r["translucent"] is None else f"{100 * r['translucent']:.1f} %"
             visible = " ".join(f"{100 * v:.0f} %" for v in r["visibility"])
-            print(f"{name:18}{r['kind']:12}{translucent:>12}{r['entropy']:9.2f}{r['entropy of tents']:9.2f}"
+            print(f"{name:18}{r['kind']:12}{fill:>6}{translucent:>12}{r['entropy']:9.2f}{r['entropy of tents']:9.2f}"
                   f"{ratio('entropy')}{ratio('lit')}{ratio('whole')}{visible:>14}  {', '.join(r['fails'])}", flush=True)
     if options.sheet:
         sheet(results, options.sheet)

@@ -9,6 +9,7 @@
 #include "prepare.h"
 #include "render/feature_pictures.h"
 #include "render/memory_needs.h"
+#include "render/picture_shares.h"
 #include "report/drawing_file.h"
 #include "report/share_bars.h"
 #include "resolve.h"
@@ -22,23 +23,21 @@ struct Options {
     SceneOptions scene;
     bool jacobian = false, occlusion = false;
     bool pictured = false;               ///< --2dfs
+    bool shares = false;                 ///< of the picture
     std::optional<ImageSize> size;       ///< of the picture
     std::optional<std::string> maps;     ///< folder of pictures and maps
     std::optional<double> mapStrength;   ///< of maps as PNG; empty: there are none
     std::optional<std::string> bars;     ///< file of bar charts
-    std::vector<CLI::Option*> ofPicture; ///< options that say nothing without --2dfs
+    std::vector<CLI::Option*> ofPicture; ///< options that say nothing without a picture
 
     void check() const {
-        refuse({{mapStrength && !maps, "there are no maps to write", "--map-strength", "add --maps DIR"}});
-        if (pictured) return;
+        refuse({{mapStrength && !maps, "there are no maps to write", "--map-strength", "add --maps DIR"},
+                {maps && !pictured, "maps are those of 2D feature saliency", "--maps", "add --2dfs"}});
+        if (pictured || shares) return;
         const auto given =
             std::ranges::find_if(ofPicture, [](const CLI::Option* option) { return option->count() > 0; });
-        const std::string name = given != ofPicture.end() ? (*given)->get_name()
-                                 : size                   ? "--size"
-                                 : maps                   ? "--maps"
-                                                          : "";
-        if (!name.empty())
-            throw UsageError("a picture is looked at with --2dfs alone", name, "add --2dfs, or leave it out");
+        const std::string name = given != ofPicture.end() ? (*given)->get_name() : size ? "--size" : "";
+        if (!name.empty()) throw UsageError("no picture is looked at", name, "add --2dfs or --shares, or leave it out");
     }
 };
 
@@ -47,6 +46,7 @@ struct Seconds {
     std::optional<double> jacobian;
     std::optional<double> pictures; ///< to draw them
     std::optional<double> fs;       ///< to look at them
+    std::optional<double> shares;
 };
 
 /// 2D feature saliency.
@@ -84,6 +84,7 @@ struct Found {
     Measures measures;
     Matrices matrices;
     std::optional<Pictured> pictured;
+    std::optional<PictureShares> shares;
     std::string engine;
     Seconds seconds;
 };
@@ -95,13 +96,20 @@ std::string sizeText(const Pictured& p) {
            (p.lit ? "lit" : "not lit") + ", drawn by " + p.renderer + "\n" + files;
 }
 
+std::string sharesText(const PictureShares& shares, bool overlaid) {
+    return "opacity of the picture " + fixedText(shares.alpha, 4) +
+           (overlaid ? ", share of the overlay " + fixedText(shares.overlay, 4) : "") + ", of no feature " +
+           fixedText(shares.rest, 4) + "\n";
+}
+
 std::string textOf(const Scene& scene, const Found& found, const std::string& profile) {
-    const auto& [m, matrices, pictured, engine, seconds] = found;
+    const auto& [m, matrices, pictured, shares, engine, seconds] = found;
     const TransferFunction& tf = scene.tf;
     const std::vector<std::string> names = namesWithEmpty(tf, *scene.histogram);
     std::vector<std::string> head{"feature", "intensities", "opacity",    "visibility",
                                   "VWS",     "brightness",  "saturation", "cover"};
     if (pictured) head.emplace_back("2DFS");
+    if (shares) head.emplace_back("share");
     Table table(head);
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
@@ -114,21 +122,25 @@ std::string textOf(const Scene& scene, const Found& found, const std::string& pr
                                      fixedText(f.vwsSaturation, 4),
                                      fixedText(m.coverage->covers[i], 4)};
         if (pictured) row.push_back(fixedText(pictured->shares[i], 4));
+        if (shares) row.push_back(fixedText(shares->features[i], 4));
         table.add(row);
     }
-    const std::string features = tf.features.empty() ? "the transfer function has no features\n"
-                                                     : table.text() + "coverage " + fixedText(m.coverage->coverage, 4) +
-                                                           "\n" + (pictured ? sizeText(*pictured) : "");
+    const std::string features = tf.features.empty()
+                                     ? "the transfer function has no features\n"
+                                     : table.text() + "coverage " + fixedText(m.coverage->coverage, 4) + "\n" +
+                                           (pictured ? sizeText(*pictured) : "") +
+                                           (shares ? sharesText(*shares, scene.overlay != nullptr) : "");
     return features + textOf(tf, matrices.jacobian, "dVWS / dopacity of") +
            textOf(tf, matrices.occlusion, "part hidden by") + "engine " + engine + profile + ": visibility " +
            secondsText(seconds.visibility) + ", saliency " + secondsText(seconds.saliency) +
            (seconds.jacobian ? ", jacobian " + secondsText(*seconds.jacobian) : "") +
+           (seconds.shares ? ", shares " + secondsText(*seconds.shares) : "") +
            (seconds.fs ? ", pictures " + secondsText(*seconds.pictures) + ", 2DFS " + secondsText(*seconds.fs) : "") +
            ", total " + secondsText(seconds.total) + "\n";
 }
 
 Json jsonOf(const Scene& scene, const Found& found) {
-    const auto& [m, matrices, pictured, engine, seconds] = found;
+    const auto& [m, matrices, pictured, shares, engine, seconds] = found;
     const TransferFunction& tf = scene.tf;
     Json features = Json::array();
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
@@ -143,6 +155,7 @@ Json jsonOf(const Scene& scene, const Found& found) {
                             {"vws_saturation", f.vwsSaturation},
                             {"cover", m.coverage->covers[i]}});
         if (pictured) features.back()["fs"] = pictured->shares[i];
+        if (shares) features.back()["picture_share"] = shares->features[i];
     }
     Json json{{"command", "measure"},
               {"engine", engine},
@@ -161,12 +174,17 @@ Json jsonOf(const Scene& scene, const Found& found) {
         picture["engine"] = pictured->renderer;
         if (!pictured->files.empty()) picture["files"] = pictured->files;
     }
+    if (shares) {
+        json["picture_shares"] = {{"alpha", shares->alpha}, {"rest", shares->rest}};
+        if (scene.overlay) json["picture_shares"]["overlay"] = shares->overlay;
+    }
     Json& times = json["seconds"] = {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}};
     if (seconds.jacobian) times["jacobian"] = *seconds.jacobian;
     if (seconds.fs) {
         times["pictures"] = *seconds.pictures;
         times["fs"] = *seconds.fs;
     }
+    if (seconds.shares) times["shares"] = *seconds.shares;
     times["total"] = seconds.total;
     return json;
 }
@@ -222,10 +240,24 @@ std::vector<std::string> writeMaps(const std::string& folder, const FeaturePictu
     return paths;
 }
 
-Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& progress) {
+PictureInput pictureOf(const Options& o, const Scene& scene) {
     PictureOptions options = o.scene.picture;
     options.size = o.size.value_or(ImageSize{});
-    const PictureInput picture = options.pictureOf(scene);
+    return options.pictureOf(scene);
+}
+
+PictureShares sharesOf(const Options& o, const Scene& scene, Seconds& seconds, Progress& progress) {
+    const PictureInput picture = pictureOf(o, scene);
+    const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
+    const Stopwatch drawing;
+    PictureShares shares =
+        pictureShares(*renderer, picture.camera, picture.tf, picture.settings, progress.phase("shares"));
+    seconds.shares = drawing.seconds();
+    return shares;
+}
+
+Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& progress) {
+    const PictureInput picture = pictureOf(o, scene);
     const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
     const FeaturePictures pictures =
@@ -261,6 +293,7 @@ Answer run(const Options& o, Progress& progress) {
     }
     if (o.occlusion) found.matrices.occlusion = workspace.occlusion(input, progress.phase("occlusion"));
     if (o.pictured) found.pictured = look(o, opened.scene, seconds, progress);
+    if (o.shares) found.shares = sharesOf(o, opened.scene, seconds, progress);
     seconds.total = total.seconds();
     Json json = jsonOf(opened.scene, found);
     addProfile(json, input.settings);
@@ -290,9 +323,11 @@ Command addMeasure(CLI::App& program) {
         "--2dfs", o->pictured,
         "also print each feature's 2D feature saliency: its share of what catches the eye in the picture that "
         "render draws with the same options");
+    app->add_flag("--shares", o->shares,
+                  "also print what part of the picture's opacity each feature has, and the overlay where there is one");
     o->scene.volume.addSizeOfBoth(
         *app, [o](const ImageSize& size) { o->size = size; },
-        "WxH: pixels of the picture that --2dfs looks at (default 512x512); N: as --sample-size");
+        "WxH: pixels of the picture that --2dfs and --shares look at (default 512x512); N: as --sample-size");
     addOutputFolder(*app, "--maps", o->maps,
                     "folder for the pictures of --2dfs (PNG) and its maps (EXR, floats): saliency, rest and, for each "
                     "feature, shared, influence, rest, total; made where missing");
@@ -306,6 +341,7 @@ Command addMeasure(CLI::App& program) {
     const std::vector<CLI::Option*> others = app->get_options();
     o->scene.picture.addLook(*app);
     o->scene.ground.add(*app);
+    o->scene.overlay.add(*app);
     for (CLI::Option* option : app->get_options())
         if (std::ranges::find(others, option) == others.end()) o->ofPicture.push_back(option);
     return {app, [o](Progress& progress) { return run(*o, progress); }};

@@ -72,6 +72,7 @@ void addSource(Hash& hash, const VolumeSource& source) {
     }
     hash.addAll(source.missing.value_or(std::nan("")), source.component, source.sampleSize,
                 static_cast<int>(source.seed), source.downsample);
+    if (source.axes) hash.add(gridAxesText(*source.axes));
     if (source.region)
         for (int a = 0; a < 3; ++a) hash.addAll(source.region->lo[a], source.region->hi[a]);
 }

@@ -172,6 +172,7 @@ json fromSource(const VolumeSource& s, const std::string& folder, DataPaths path
     if (s.step != 0) j["step"] = s.step;
     if (!s.array.empty()) j["array"] = s.array;
     if (s.component != 0) j["component"] = s.component;
+    if (s.axes) j["axes"] = gridAxesText(*s.axes);
     if (s.missing) j["missing"] = *s.missing;
     if (s.downsample != 0) j["downsample"] = s.downsample;
     if (s.region)
@@ -206,6 +207,14 @@ VoxelRegion toRegion(const JsonValue& j) {
     return region;
 }
 
+GridAxes toGridAxes(const JsonValue& j) {
+    try {
+        return parseGridAxes(j.text());
+    } catch (const UsageError& e) {
+        j.fail(e.problem(), e.whatToDo());
+    }
+}
+
 VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
     j.requireObject();
     VolumeSource s;
@@ -230,6 +239,7 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
     if (j.has("step")) s.step = j["step"].whole(0, kMostInt);
     if (j.has("array")) s.array = j["array"].text();
     if (j.has("component")) s.component = j["component"].whole(0, 1'000'000);
+    if (j.has("axes")) s.axes = toGridAxes(j["axes"]);
     if (j.has("missing")) s.missing = j["missing"].number();
     if (j.has("downsample")) s.downsample = j["downsample"].whole(1, 65536);
     if (j.has("region")) s.region = toRegion(j["region"]);

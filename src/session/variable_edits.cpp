@@ -4,6 +4,9 @@
 #include <array>
 #include <filesystem>
 
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include "base/error.h"
 #include "base/text.h"
 #include "session/scene_data.h"
@@ -272,6 +275,38 @@ void setDataSource(Session& session, const VolumeSource& source) {
         for (Variable& v : all)
             if (v.name == name) v.source = source;
     });
+}
+
+void setDataAxes(Session& session, const std::optional<GridAxes>& axes) {
+    session.variables.edit([&](std::vector<Variable>& all) {
+        for (Variable& v : all)
+            if (!v.derivation) v.source.axes = axes;
+    });
+}
+
+void turnData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes) {
+    setDataAxes(session, axes);
+    const Volume after = withAxes(volume, axes);
+    const Mat3 turn = after.geometry().directions * glm::inverse(volume.geometry().directions);
+    const auto moved = [&](const Vec3& world) {
+        return after.geometry().worldFromVoxel(volume.geometry().voxelFromWorld(world));
+    };
+    if (!session.rulers->empty())
+        session.rulers.edit([&](std::vector<Ruler>& rulers) {
+            for (Ruler& ruler : rulers) {
+                for (Vec3& point : ruler.points) point = moved(point);
+                if (ruler.kind == RulerKind::Box)
+                    ruler.points = boxRuler(ruler.points.front(), ruler.points.back()).points;
+            }
+        });
+    if (!session.clipping->planes.empty())
+        session.clipping.edit([&](Clipping& clipping) {
+            for (ClipPlane& plane : clipping.planes) {
+                const Vec3 on = moved(plane.normal * (plane.offset / glm::dot(plane.normal, plane.normal)));
+                plane.normal = glm::transpose(glm::inverse(turn)) * plane.normal;
+                plane.offset = glm::dot(plane.normal, on);
+            }
+        });
 }
 
 std::optional<int> featureFrames(const Session& session) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "session/session.h"
+#include "volume/grid_axes.h"
 
 namespace pellucid {
 
@@ -58,6 +59,10 @@ std::string featuresOf(const Session& session, const std::string& text);
 /// the session has variables.
 const Variable& dataVariable(const Session& session);
 void setDataSource(Session& session, const VolumeSource& source);
+/// How the axes of the data of all variables run; empty: as their files say.
+void setDataAxes(Session& session, const std::optional<GridAxes>& axes);
+/// The same, of which the present data are `volume`: measures and clipping planes go along with them.
+void turnData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes);
 
 /// Latest frames of the volatility that the features are of; empty where they are of something else.
 std::optional<int> featureFrames(const Session& session);

@@ -47,6 +47,15 @@ std::vector<LookPoint> pointsOf(const OverlayLook& look, double step) {
     return points;
 }
 
+/// Whether more of these distances lie near 0 than near the largest: as of a map of differences, not of a CT, whose air
+/// is all on one end.
+bool fallsFromZero(std::vector<double>& distances) {
+    std::ranges::sort(distances);
+    const double third = quantile(distances, kTopAt) / 3;
+    const auto upTo = [&](double value) { return std::ranges::upper_bound(distances, value) - distances.begin(); };
+    return upTo(third) > static_cast<std::ptrdiff_t>(distances.size()) - upTo(2 * third);
+}
+
 } // namespace
 
 OverlayLook oneSidedLook(const ValueRange& values) {
@@ -60,15 +69,16 @@ OverlayLook twoSidedLook(const ValueRange& values) {
 }
 
 OverlayLook usualLook(const Volume& volume, const JobControl& job) {
-    std::vector<double> magnitudes;
-    std::size_t negative = 0;
+    std::vector<double> above, below; // distances from 0
     for (const double v : surveyVoxels(volume, {job.stop, {}}).values) {
         if (!std::isfinite(v) || v == 0) continue;
-        magnitudes.push_back(std::abs(v));
-        negative += v < 0 ? 1 : 0;
+        (v > 0 ? above : below).push_back(std::abs(v));
     }
+    std::vector<double> magnitudes = above;
+    magnitudes.insert(magnitudes.end(), below.begin(), below.end());
     const auto least = static_cast<std::size_t>(kLeastSide * static_cast<double>(magnitudes.size()));
-    if (negative <= least || magnitudes.size() - negative <= least) return oneSidedLook(volume.dataRange());
+    if (std::min(above.size(), below.size()) <= least || !fallsFromZero(above) || !fallsFromZero(below))
+        return oneSidedLook(volume.dataRange());
     std::ranges::sort(magnitudes);
     return rounded({true, quantile(magnitudes, kThresholdAt), quantile(magnitudes, kTopAt)});
 }

@@ -1,6 +1,7 @@
 #include "volume/intensity_grid.h"
 
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "volume/memory_use.h"
@@ -58,6 +59,36 @@ const SampleArray<std::uint8_t>* asCodes(const Volume& volume) {
     return samples != nullptr && samples->isMapped() && asTheyAre ? samples : nullptr;
 }
 
+constexpr int kInvalid = -1;
+
+/// Code of a value, divided by `divisor`; kInvalid of an invalid one.
+int codeOf(const Volume& volume, const IntensityCoder& coder, int divisor, double value) {
+    const double s = volume.intensityOfValue(value);
+    return std::isnan(s) ? kInvalid : coder.code(s) / divisor;
+}
+
+/// Hands the code of every voxel to write(i, code), on any thread.
+template <class Write>
+void forEachCode(const Volume& volume, const IntensityCoder& coder, int divisor, const Write& write) {
+    withSamples(volume, [&](const auto& samples) {
+        using T = typename std::decay_t<decltype(samples)>::value_type;
+        if constexpr (std::is_integral_v<T> && sizeof(T) <= 2) {
+            // So few values are possible that looking a code up is quicker than making it anew.
+            constexpr int kLowest = std::numeric_limits<T>::lowest(), kHighest = std::numeric_limits<T>::max();
+            if (samples.size() > static_cast<std::size_t>(kHighest - kLowest)) {
+                std::vector<std::int32_t> codes;
+                for (int v = kLowest; v <= kHighest; ++v) codes.push_back(codeOf(volume, coder, divisor, v));
+                return forEachVoxel(volume, {}, [&](const auto& values, std::size_t i) {
+                    write(i, codes[static_cast<std::size_t>(static_cast<int>(values[i]) - kLowest)]);
+                });
+            }
+        }
+        forEachVoxel(volume, {}, [&](const auto& values, std::size_t i) {
+            write(i, codeOf(volume, coder, divisor, static_cast<double>(values[i])));
+        });
+    });
+}
+
 } // namespace
 
 IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width) {
@@ -73,10 +104,8 @@ IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width) {
             grid.codes = CodeGrid(volume.dims(), *samples);
         } else {
             ZeroedVector<std::uint8_t> codes(volume.size() + CodeGrid::kPadding);
-            forEachVoxel(volume, {}, [&](const auto& values, std::size_t i) {
-                const double s = volume.intensityOfValue(static_cast<double>(values[i]));
-                codes[i] = static_cast<std::uint8_t>(coder.code(s) / grid.codeStep);
-            });
+            forEachCode(volume, coder, grid.codeStep,
+                        [&](std::size_t i, int code) { codes[i] = static_cast<std::uint8_t>(code); });
             grid.codes = CodeGrid(volume.dims(), std::move(codes));
         }
         grid.codeStep = 1;
@@ -84,12 +113,11 @@ IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width) {
     }
     ZeroedVector<std::uint16_t> codes(volume.size() + CodeGrid::kPadding);
     if (volume.invalidCount() > 0) grid.valid.assign(volume.size(), 1);
-    forEachVoxel(volume, {}, [&](const auto& values, std::size_t i) {
-        const double s = volume.intensityOfValue(static_cast<double>(values[i]));
-        if (std::isnan(s))
+    forEachCode(volume, coder, 1, [&](std::size_t i, int code) {
+        if (code == kInvalid)
             grid.valid[i] = 0;
         else
-            codes[i] = coder.code(s);
+            codes[i] = static_cast<std::uint16_t>(code);
     });
     grid.codes = CodeGrid(volume.dims(), std::move(codes));
     return grid;

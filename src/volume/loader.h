@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "volume/grid_axes.h"
 #include "volume/memory_use.h"
 #include "volume/volume.h"
 
@@ -45,6 +46,7 @@ struct VolumeSource {
     std::optional<double> missing;    ///< this value is invalid (besides what the file declares)
     std::optional<ValueRange> range;  ///< the user's intensity window
     int component = 0;                ///< of a multi-component file
+    std::optional<GridAxes> axes;     ///< how i, j, k run, whatever the file says; empty: as it says
     int sampleSize = 0;               ///< --size of a sample, 0 = its default
     std::uint32_t seed = 1;           ///< of a sample
     /// Each voxel is the mean of so many along each axis (see excerpt.h). 1: all voxels, or an error where memory has
@@ -57,7 +59,7 @@ struct VolumeSource {
     /// Whether both name the same data, whatever is done with it.
     bool operator==(const VolumeSource& o) const {
         return path == o.path && more == o.more && frames == o.frames && step == o.step && array == o.array &&
-               raw == o.raw && missing == o.missing && range == o.range && component == o.component &&
+               raw == o.raw && missing == o.missing && range == o.range && component == o.component && axes == o.axes &&
                sampleSize == o.sampleSize && seed == o.seed && downsample == o.downsample && region == o.region;
     }
 };

@@ -44,8 +44,8 @@ struct SeriesListing {
 /// several suffixes those of the most frequent one are taken. Files that hold several steps give all of them, one file
 /// after the other.
 ///
-/// Frames keep raw, missing, component, array, downsample and region of `source`. Throws FileError where nothing is
-/// found, UsageError for VolumeSource::frames that are not there.
+/// Frames keep raw, missing, component, axes, array, downsample and region of `source`. Throws FileError where nothing
+/// is found, UsageError for VolumeSource::frames that are not there.
 SeriesListing listSeries(const VolumeSource& source, const JobControl& job = {});
 
 /// The files that listSeries() takes frames from, in their order and without looking into them: those on disk, or the

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "volume/spacing.h"
@@ -121,6 +122,14 @@ Volume Volume::withRange(const ValueRange& range) const {
                          "give two such numbers, in data units");
     Volume other = *this;
     other.m_range = range;
+    other.m_codes = std::make_shared<SharedCodes>();
+    return other;
+}
+
+Volume Volume::withGeometry(const Geometry& geometry) const {
+    PELLUCID_CHECK(geometry.dims == m_geometry.dims);
+    Volume other = *this;
+    other.m_geometry = geometry;
     other.m_codes = std::make_shared<SharedCodes>();
     return other;
 }

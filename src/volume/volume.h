@@ -117,6 +117,8 @@ public:
     const ValueRange& range() const noexcept { return m_range; }
     /// The same samples (shared, not copied) seen through another window. Throws Error unless lo < hi, both finite.
     Volume withRange(const ValueRange& range) const;
+    /// The same samples (shared, not copied) at another place of the world; `geometry` has the dims of this volume.
+    Volume withGeometry(const Geometry& geometry) const;
 
     std::size_t invalidCount() const noexcept { return m_invalidCount; }
     bool isConstant() const noexcept { return m_dataRange.lo == m_dataRange.hi; }
@@ -142,6 +144,7 @@ public:
     std::string title;              ///< file name or sample name
     std::string format;             ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
     std::optional<Excerpt> excerpt; ///< empty: all voxels of the data
+    std::optional<Geometry> inFile; ///< as the file has it, where the user said how the axes run
     /// Remarks the user should see once, e.g. "the first of 25 time steps is shown".
     std::vector<std::string> notices;
 

@@ -94,3 +94,28 @@ TEST_CASE("figures are of the volume alone, whatever lies over it, and that is s
     CHECK(with.err.find("figures are of the volume alone") != std::string::npos);
     CHECK(without.err.find("overlay") == std::string::npos);
 }
+
+TEST_CASE("measure tells what part of the picture the overlay has, and each feature beside it", "[cli][overlay]") {
+    const Workshop w;
+    const Words measure{"measure", "sample:shells", "--sample-size", "16",       "--tf", "tents:3:0.05", "--view",
+                        "30,20",   "--size",        "48x48",         "--engine", "cpu",  "--shares"};
+    const auto alone = w.json(measure);
+    CHECK_FALSE(alone["picture_shares"].contains("overlay"));
+    const Outcome o = w.run(measure + kOverlay + Words{"--json"});
+    REQUIRE(o.status == 0);
+    const auto both = nlohmann::json::parse(o.out);
+    double sum = both["picture_shares"]["overlay"].get<double>() + both["picture_shares"]["rest"].get<double>();
+    for (std::size_t f = 0; f < 3; ++f) {
+        const double share = both["features"][f]["picture_share"];
+        sum += share;
+        CHECK(share < alone["features"][f]["picture_share"].get<double>()); // it hides some of each
+        CHECK(both["features"][f]["vws"] == alone["features"][f]["vws"]);
+    }
+    CHECK(both["picture_shares"]["overlay"] > 0.01);
+    CHECK(sum == Approx(both["picture_shares"]["alpha"].get<double>()).margin(1e-6));
+    const Outcome text = w.run(measure + kOverlay);
+    CHECK(text.out.find("share of the overlay 0.") != std::string::npos);
+    const Outcome none = w.run({"measure", "sample:shells", "--sample-size", "16", "--overlay", "sample:disks"});
+    CHECK(none.status == 2);
+    CHECK(none.err.find("no picture is looked at, --overlay") != std::string::npos);
+}

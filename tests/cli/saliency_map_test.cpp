@@ -83,8 +83,8 @@ TEST_CASE("options of a picture are refused where no picture is looked at", "[cl
     for (const Words& more : {Words{"--size", "96x72"}, Words{"--shading"}, Words{"--background", "1,1,1"}}) {
         const Outcome outcome = w.run(Words{"measure"} + kShells + more);
         CHECK(outcome.status == 2);
-        CHECK(outcome.err == "pellucid-cli: error: a picture is looked at with --2dfs alone, " + more[0] +
-                                 ", add --2dfs, or leave it out\n");
+        CHECK(outcome.err == "pellucid-cli: error: no picture is looked at, " + more[0] +
+                                 ", add --2dfs or --shares, or leave it out\n");
     }
     // A number is still the sample's.
     CHECK(w.json({"measure", "sample:shells", "--size", "16", "--tf", "tents:3"})["volume"]["dims"] ==

@@ -5,9 +5,11 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
+#include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QTemporaryDir>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -106,7 +108,7 @@ TEST_CASE("a map of t-values is laid over its anatomy, changed and taken away", 
     w.lay(files.file("map.nrrd"));
     CHECK(w.child<QLabel>("overlayFile").text() == "map.nrrd");
     CHECK(w.child<QCheckBox>("overlayShown").isChecked());
-    CHECK(w.child<QLabel>("overlayState").text().contains("Figures are of the volume alone"));
+    CHECK(w.child<QLabel>("overlayState").text().contains("Figures in the panel Features are of the volume alone"));
     w.child<QDoubleSpinBox>("overlayOpacity").setValue(0.4);
     const QImage both = w.picture();
     // Red where t is 8, blue where it is −8, each where it lies in the world.
@@ -182,6 +184,28 @@ TEST_CASE("slices show the map where it lies, and say its value", "[overlay]") {
             CHECK(pane.hoverText().contains("overlay "));
         }
     }
+}
+
+TEST_CASE("the panel tells the shares of both on request, as long as they hold", "[overlay]") {
+    const MapFiles files;
+    MapWindow w(files);
+    w.lay(files.file("map.nrrd"));
+    auto& dock = w.child<QDockWidget>("overlayDock");
+    dock.show();
+    dock.raise();
+    const auto& text = w.child<QLabel>("overlayShares");
+    CHECK_FALSE(text.isVisible());
+    w.child<QPushButton>("overlayComputeShares").click();
+    REQUIRE(waitFor([&] { return text.text().startsWith("Seen in the picture: overlay "); }));
+    INFO(text.text().toStdString());
+    double sum = 0;
+    static const QRegularExpression percents(QStringLiteral("([0-9.]+) %"));
+    for (auto found = percents.globalMatch(text.text()); found.hasNext();) sum += found.next().captured(1).toDouble();
+    CHECK(sum == Approx(100).margin(0.3)); // each is rounded to a tenth
+    Camera turned = w.services().scene().camera;
+    turned.eye += Vec3(20, 0, 0);
+    w.document().setCamera(turned);
+    CHECK_FALSE(text.isVisible());
 }
 
 TEST_CASE("an overlay is saved with the session and opened again", "[overlay]") {

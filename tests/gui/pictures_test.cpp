@@ -32,6 +32,17 @@ void grab(OpenWindow& w, const char* name) {
     REQUIRE(w.window.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + name));
 }
 
+void showPanel(OpenWindow& w, const char* id) { w.services().panels().show(id); }
+
+/// The knee, coarse enough to be drawn soon.
+void openKnee(OpenWindow& w) {
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
+    if (source.isSample()) source.sampleSize = 160;
+    w.open(source);
+    w.settle();
+}
+
 } // namespace
 
 TEST_CASE("a picture of the transfer-function editor", "[.pictures]") {
@@ -53,7 +64,10 @@ TEST_CASE("a picture of the transfer-function editor", "[.pictures]") {
     w.canvas().grab(); // what is seen is counted
     REQUIRE(waitFor([&] { return !w.canvas().isCounting(); }));
     w.settle();
-    REQUIRE(w.child<QWidget>("tfEditor").grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + "/tf_editor.png"));
+    QDockWidget& dock = *w.services().panels().dock("tf");
+    w.window.resizeDocks({&dock}, {300}, Qt::Vertical);
+    w.settle();
+    REQUIRE(dock.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + "/tf_editor.png"));
 }
 
 TEST_CASE("pictures for the guide", "[.pictures]") {
@@ -64,25 +78,24 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
     w.open(source);
     grab(w, "window_opened.png");
-    w.child<QAction>("displayAction").trigger();
+    showPanel(w, "display");
     w.child<QDoubleSpinBox>("clipXHi").setValue(60);
-    w.child<QAction>("lightAction").trigger();
     grab(w, "window_display.png");
     w.document().undo();
-    w.child<QAction>("clipAction").trigger();
+    showPanel(w, "clip");
     w.child<QAction>("addPlaneAction").trigger();
     const Camera home = w.document().camera();
     w.document().setCamera(rotated(home, w.document().volume()->geometry(), 50, 10));
     grab(w, "window_clip.png");
     w.document().setCamera(home);
-    for (const char* action : {"clipHandlesAction", "clipAction", "lightAction", "displayAction"})
-        w.child<QAction>(action).trigger();
+    w.child<QAction>("clipHandlesAction").trigger();
     w.document().undo();
+    showPanel(w, "features");
     w.document().setTargets({1.0 / 6, 2.0 / 6, 3.0 / 6});
     w.optimizing().start();
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     grab(w, "window_optimized.png");
-    w.child<QAction>("influenceAction").trigger();
+    showPanel(w, "influence");
     grab(w, "window_influence.png");
 }
 
@@ -90,11 +103,7 @@ TEST_CASE("targets for the guide", "[.pictures][.targetspicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
     w.window.resize(1280, 800);
-    VolumeSource source;
-    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
-    if (source.isSample()) source.sampleSize = 160;
-    w.open(source);
-    w.settle();
+    openKnee(w);
     w.child<QAction>("targetsDiagonal").trigger();
     w.child<TargetBars>("targetBars").toggleLock(0);
     w.child<QAction>("liveTargetsAction").trigger();
@@ -105,11 +114,7 @@ TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
     w.window.resize(1280, 800);
-    VolumeSource source;
-    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
-    if (source.isSample()) source.sampleSize = 160;
-    w.open(source);
-    w.settle();
+    openKnee(w);
     QTest::mouseClick(&w.view(), Qt::LeftButton, {}, w.view().rect().center() + QPoint(20, 10));
     grab(w, "probe.png");
 }
@@ -118,11 +123,8 @@ TEST_CASE("the globe for the guide", "[.pictures][.globepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
     w.window.resize(1280, 800);
-    VolumeSource source;
-    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
-    if (source.isSample()) source.sampleSize = 160;
-    w.open(source);
-    w.child<QAction>("viewsAction").trigger();
+    openKnee(w);
+    showPanel(w, "views");
     QTest::qWait(1000); // it begins when everything rests
     grab(w, "best_view.png");
 }
@@ -144,7 +146,7 @@ TEST_CASE("curves for the guide", "[.pictures][.convergencepicture]") {
         REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     };
     run(SearchMethod::Fixed);
-    w.child<QAction>("showConvergence").trigger();
+    showPanel(w, "convergence");
     w.child<QToolButton>("showStart").click();
     run(SearchMethod::Parallel);
     grab(w, "convergence.png");
@@ -176,6 +178,39 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     grab(w, "refiner.png");
 }
 
+TEST_CASE("slices with a measure, two states and the saliency map for the guide", "[.pictures][.kneepictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    openKnee(w);
+    const auto trigger = [&](const char* action) { w.child<QAction>(action).trigger(); };
+    trigger("layoutFourAction");
+    w.settle();
+    grab(w, "slices.png");
+    trigger("layoutVolumeAction");
+
+    showPanel(w, "pictureSaliency");
+    w.services().store().edit("2D saliency", {}, [](Session& s) {
+        s.pictureSaliency.edit([](PictureSaliencyView& view) {
+            view.on = true;
+            view.map = SaliencyMapShown::Picture;
+        });
+    });
+    grab(w, "picture_saliency.png");
+    w.document().undo();
+
+    w.controllers().comparing.pin();
+    showPanel(w, "features");
+    w.document().setTargets({0.2, 0.3, 0.5});
+    w.optimizing().start();
+    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    w.services().store().edit("Compare", {}, [](Session& s) {
+        s.comparison.edit([](ComparisonView& view) { view.mode = CompareMode::SideBySide; });
+    });
+    showPanel(w, "compare");
+    grab(w, "compare.png");
+}
+
 TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
@@ -183,7 +218,7 @@ TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
     VolumeSource source;
     source.path = "sample:shells";
     w.open(source);
-    w.child<QAction>("fieldsAction").trigger();
+    showPanel(w, "fields");
     w.services().store().edit("Field", {}, [](Session& session) {
         session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
         session.field.edit([](FieldView& f) { f.kind = FieldKind::Vws; });
@@ -199,7 +234,7 @@ TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
     source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
     w.opening().openVolume(source, "tents:3");
     w.settle();
-    w.child<QAction>("spaceAction").trigger();
+    showPanel(w, "space");
     w.document().setTargets({0.1, 0.3, 0.6});
     for (const SearchMethod method : {SearchMethod::Parallel, SearchMethod::Fixed}) {
         w.services().store().edit("Method", {}, [method](Session& session) {
@@ -234,7 +269,7 @@ TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
         source.path = "sample:" + std::string(show.sample);
         w.open(source);
         w.settle();
-        w.child<QAction>("variablesAction").trigger();
+        showPanel(w, "variables");
         w.opening().editInJob("Mapping", [&](Session& s) {
             s.frame = show.frame;
             if (show.sample == std::string("hurricane")) {
@@ -307,7 +342,7 @@ TEST_CASE("a picture of an overlay", "[.pictures]") {
         });
         s.clipping.edit([](Clipping& c) { c.hi = {1, 1, 0.55}; });
     });
-    w.child<QAction>("overlayAction").trigger();
+    showPanel(w, "overlay");
     w.child<QAction>("layoutFourAction").trigger();
     w.settle();
     const Geometry& g = w.services().scene().volume->geometry();

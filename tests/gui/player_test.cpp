@@ -701,7 +701,7 @@ TEST_CASE("pictures of a series for the guide", "[.pictures]") {
     player.goTo(20);
     w.settle();
     grab("player.png");
-    w.child<QAction>("temporalAction").trigger();
+    w.services().panels().show("temporal");
     w.window.resizeDocks({&w.child<QDockWidget>("temporalDock")}, {260}, Qt::Vertical);
     w.child<QToolButton>("temporalMeasure").click();
     auto& panel = *w.window.findChild<TemporalPanel*>();

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/error.h"
+#include "render/clipping.h"
 #include "session/variable_edits.h"
 
 using namespace pellucid;
@@ -216,4 +217,55 @@ TEST_CASE("variables are named after their files", "[variables]") {
     CHECK(nameOf("007.raw") == "007");
     CHECK(nameOf("sample:vortex") == "vortex");
     CHECK(nameOf("sample:hurricane/wind") == "wind");
+}
+
+TEST_CASE("measures and clipping planes go along with data that are turned", "[variables]") {
+    Session s = cloudAndRain();
+    s.variables.edit([](std::vector<Variable>& all) { all.push_back(derived("slope", "gradient:cloud")); });
+    Geometry g;
+    g.dims = {8, 10, 12};
+    g.spacing = {1, 2, 0.5};
+    g.origin = {5, -3, 40};
+    const Volume before(g, SampleArray<float>(std::vector<float>(voxelCount(g.dims), 1)));
+    const Vec3 a(1, 2, 3), b(6, 7, 9); // voxels
+    s.rulers.edit([&](std::vector<Ruler>& rulers) {
+        addRuler(rulers, {.kind = RulerKind::Distance, .points = {g.worldFromVoxel(a), g.worldFromVoxel(b)}});
+        addRuler(rulers, boxRuler(g.worldFromVoxel(a), g.worldFromVoxel(b)));
+    });
+    s.clipping.edit([](Clipping& c) { c.planes = {{{1, 2, 3}, 130}, {{0, 0, -2}, -84}}; });
+    const double length = *readGeometry(s.rulers->front()).length;
+
+    const Session old = s;
+    const GridAxes axes = parseGridAxes("PIR");
+    turnData(s, before, axes);
+    CHECK((*s.variables)[0].source.axes == axes);
+    CHECK((*s.variables)[1].source.axes == axes);
+    CHECK_FALSE((*s.variables)[2].source.axes); // it is made of one that is turned
+    const Geometry after = withAxes(before, axes).geometry();
+    for (std::size_t p = 0; p < 2; ++p) {
+        const Vec3 voxel = after.voxelFromWorld(s.rulers->front().points[p]);
+        for (int axis = 0; axis < 3; ++axis) CHECK(voxel[axis] == Approx((p == 0 ? a : b)[axis]));
+    }
+    CHECK(*readGeometry(s.rulers->front()).length == Approx(length));
+    const Ruler& box = s.rulers->back();
+    for (int axis = 0; axis < 3; ++axis) CHECK(box.points[0][axis] <= box.points[1][axis]);
+    // The planes keep the same voxels.
+    const auto oldPlanes = planesInVoxels(*old.clipping, g), newPlanes = planesInVoxels(*s.clipping, after);
+    int kept = 0, all = 0;
+    for (int k = 0; k < g.dims.z; ++k)
+        for (int j = 0; j < g.dims.y; ++j)
+            for (int i = 0; i < g.dims.x; ++i) {
+                const bool keeps = pellucid::keeps(oldPlanes, Vec3(i, j, k));
+                CHECK(keeps == pellucid::keeps(newPlanes, Vec3(i, j, k)));
+                kept += keeps;
+                ++all;
+            }
+    CHECK(kept > 0);
+    CHECK(kept < all);
+
+    turnData(s, withAxes(before, axes), {});
+    CHECK_FALSE((*s.variables)[0].source.axes);
+    for (std::size_t p = 0; p < 2; ++p)
+        for (int axis = 0; axis < 3; ++axis)
+            CHECK(s.rulers->front().points[p][axis] == Approx(old.rulers->front().points[p][axis]));
 }

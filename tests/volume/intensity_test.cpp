@@ -125,3 +125,33 @@ TEST_CASE("a window wider than the largest double has finite intensities", "[vol
     CHECK(volume.intensity(1) == 0.5);
     CHECK(volume.intensity(2) == 1.0);
 }
+
+TEST_CASE("codes of large and of small volumes of 8 and 16 bits are the same", "[intensity]") {
+    // A large volume has its codes from a table of all values.
+    const auto check = [](const auto& values, const ValueRange& window, std::optional<double> missing) {
+        using Values = std::decay_t<decltype(values)>;
+        const int n = static_cast<int>(values.size());
+        const Volume small = Volume({{n, 1, 1}, {1, 1, 1}, {0, 0, 0}}, values, missing).withRange(window);
+        Values many;
+        const int copies = 70000 / n + 1;
+        for (int c = 0; c < copies; ++c) many.insert(many.end(), values.begin(), values.end());
+        const Volume large = Volume({{n, copies, 1}, {1, 1, 1}, {0, 0, 0}}, many, missing).withRange(window);
+        const IntensityGrid one = makeIntensityGrid(small, CodeWidth::Wide),
+                            all = makeIntensityGrid(large, CodeWidth::Wide);
+        REQUIRE(one.maxCode == all.maxCode);
+        REQUIRE(one.valid.empty() == all.valid.empty());
+        bool same = true;
+        for (std::size_t i = 0; i < many.size(); ++i) {
+            same = same && all.codes[i] == one.codes[i % values.size()];
+            if (!one.valid.empty()) same = same && all.valid[i] == one.valid[i % values.size()];
+        }
+        CHECK(same);
+    };
+    const std::vector<std::int16_t> ct{-32768, -1024, -1000, -1, 0, 1, 40, 1234, 32767};
+    check(ct, {-1000, 1234}, {});
+    check(ct, {-1000.5, 2000.25}, {});
+    check(ct, {-1000, 1234}, 40.0);
+    check(std::vector<std::uint16_t>{0, 1, 999, 32768, 65535}, {0, 65535}, {});
+    check(std::vector<std::int8_t>{-128, -1, 0, 1, 127}, {-100, 100}, -1.0);
+    check(std::vector<std::uint8_t>{0, 1, 128, 255}, {0, 255}, {});
+}

@@ -78,6 +78,13 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
              kGroup);
     addValue(app, "--component", "N", component, wholeFrom(0, 1'000'000), "component of a multi-component file, from 0",
              kGroup);
+    addValue(
+        app, "--axes", "IJK",
+        [this](const std::string& text, const std::string& option) {
+            axes = atOption(option + " " + text, [&] { return parseGridAxes(text); });
+        },
+        "where the axes i, j, k of the data point, whatever the file says: LPS (letters of L R A P S I), or +x-y+z",
+        kGroup);
     addValue(app, size == SizeIs::Sample ? "--size,--sample-size" : "--sample-size", "N", sampleSize, parseSampleSize,
              "voxels along the longest axis of a sample", kGroup);
     addValue(app, "--seed", "N", seed, wholeFrom<std::uint32_t>(0, std::numeric_limits<std::uint32_t>::max()),
@@ -130,8 +137,8 @@ VoxelRegion parseVoxelRegion(const std::string& text, const std::string& option)
 }
 
 bool VolumeOptions::anyDetail() const {
-    return frames || frame || array || raw || spacing || skipBytes || missing || range || component || sampleSize ||
-           seed || downsample || region;
+    return frames || frame || array || raw || spacing || skipBytes || missing || range || component || axes ||
+           sampleSize || seed || downsample || region;
 }
 
 void VolumeOptions::applyTo(SceneInputs& inputs) const {
@@ -166,6 +173,7 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
 
     if (session.isEmpty()) session.variables.edit([](std::vector<Variable>& all) { all.emplace_back(); });
     setDataSource(session, source);
+    if (axes) setDataAxes(session, axes);
     inputs.range = range;
     inputs.frame = frame;
 }

@@ -1,4 +1,4 @@
-// VOLUME, --frames, --frame, --array, --cache, --raw, --spacing, --skip, --missing, --range, --component,
+// VOLUME, --frames, --frame, --array, --cache, --raw, --spacing, --skip, --missing, --range, --component, --axes,
 // --sample-size, --seed, --downsample, --region: what is opened.
 #pragma once
 
@@ -26,6 +26,7 @@ struct VolumeOptions {
     std::optional<double> missing;
     std::optional<ValueRange> range;
     std::optional<int> component;
+    std::optional<GridAxes> axes;
     std::optional<FrameRange> frames;
     std::optional<int> frame;
     std::optional<std::string> array;

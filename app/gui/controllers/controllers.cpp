@@ -33,6 +33,7 @@ Controllers::Controllers(Services& all) : services(all) {
     films.addActions();
     studies.addActions();
     addEditActions(services);
+    orientation.addActions();
     starting.addActions();
     features.addActions();
     refining.addActions();

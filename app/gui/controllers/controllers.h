@@ -9,6 +9,7 @@
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
+#include "controllers/orientation_controller.h"
 #include "controllers/overlay_controller.h"
 #include "controllers/picture_saliency_controller.h"
 #include "controllers/player_controller.h"
@@ -39,6 +40,7 @@ struct Controllers {
     SaveController saving{services, fields, pictureSaliency, rulers};
     FilmController films{services};
     OpenController opening{services, saving};
+    OrientationController orientation{services, opening};
     OverlayController overlays{services, opening};
     StartController starting{services, opening};
     RecoveryController recovery{services, opening, saving};

@@ -4,9 +4,11 @@
 
 #include "controllers/controllers.h"
 #include "dialogs/series_files.h"
+#include "engines/engines.h"
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
+#include "render/picture_shares.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
 #include "widgets/theme.h"
@@ -24,6 +26,8 @@ private:
     void addRows(QFormLayout& form);
     void follow();
     QString stateText() const;
+    void computeShares();
+    QString sharesText() const;
 
     Services& m_services;
     OverlayController& m_overlays;
@@ -41,12 +45,38 @@ private:
                                      tr("A transfer function from a file, in the place of threshold, top and colours"));
     QPushButton* m_removeCurve =
         named(new QPushButton(tr("None"), this), "overlayRemoveCurve", tr("By threshold, top and colours again"));
+    QPushButton* m_computeShares =
+        named(new QPushButton(tr("Shares of both"), this), "overlayComputeShares",
+              tr("What part of the picture's opacity the overlay and each feature have, in per cent; whatever lies in "
+                 "front hides what lies behind, of either volume"));
     QLabel* m_state = wrappedLabel("overlayState", this);
+    QLabel* m_sharesText = wrappedLabel("overlayShares", this);
+    std::optional<PictureShares> m_shares; ///< of m_sharesOf
+    PictureInput m_sharesOf;
+    Job<PictureInput, PictureShares> m_job;
     SettingRows* m_rows = nullptr;
 };
 
+/// The picture as it is seen, with fewer pixels: shares are means over all of them.
+PictureInput sharedPicture(const Scene& scene) {
+    constexpr int kWidth = 320, kHeight = 240;
+    PictureInput picture = pictureInput(scene, kWidth, kHeight, true);
+    picture.settings.finestInD0.reset();
+    return picture;
+}
+
 OverlayPanel::OverlayPanel(Services& services, OverlayController& overlays, QWidget* parent)
-    : QWidget(parent), m_services(services), m_overlays(overlays) {
+    : QWidget(parent), m_services(services), m_overlays(overlays),
+      m_job(
+          [](const PictureInput& picture, const JobControl& job) {
+              const auto renderer = makeRenderer(EngineChoice::Cpu, picture.volume);
+              return pictureShares(*renderer, picture.camera, picture.tf, picture.settings, job);
+          },
+          [this](const PictureInput& picture, PictureShares& shares) {
+              m_sharesOf = picture;
+              m_shares = std::move(shares);
+              follow();
+          }) {
     setObjectName("overlayPanel");
     m_file->setTextFormat(Qt::PlainText);
     makeFaint(*m_state);
@@ -59,6 +89,9 @@ OverlayPanel::OverlayPanel(Services& services, OverlayController& overlays, QWid
         m_overlays.setShown(shown);
         m_shown->setChecked(m_services.store().session().overlay->isDrawn()); // until it has been done
     });
+    connect(m_computeShares, &QPushButton::clicked, this, [this] { computeShares(); });
+    connect(&m_job, &JobBase::busyChanged, this, [this] { follow(); });
+    services.showFailuresOf(m_job, tr("Cannot tell the shares"));
     connect(m_choose, &QPushButton::clicked, this, [this] { m_overlays.choose(); });
     connect(m_remove, &QPushButton::clicked, this, [this] { m_overlays.remove(); });
     connect(m_openCurve, &QPushButton::clicked, this, [this] { m_overlays.chooseCurve(); });
@@ -69,6 +102,7 @@ OverlayPanel::OverlayPanel(Services& services, OverlayController& overlays, QWid
                  [name](OverlayView& o) { o.colorMap = name; });
     });
     connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (m_shares) follow();
         if (before.overlay == after.overlay) return;
         m_rows->follow(); // what "auto" stands for
         follow();
@@ -107,8 +141,28 @@ void OverlayPanel::addRows(QFormLayout& form) {
                             .automatic = [] { return OverlayView::kUsual; },
                             .stepText = tr("Opacity of the overlay")});
     form.addRow(tr("Own curve"), rowOf({{m_curve, 1}, m_openCurve, m_removeCurve}));
+    form.addRow(rowOf({m_computeShares, Cell::rest()}));
+    form.addRow(m_sharesText);
     form.addRow(m_state);
     m_rows->follow();
+}
+
+void OverlayPanel::computeShares() {
+    m_shares.reset();
+    m_job.start(sharedPicture(m_services.scene()), tr("the shares of the picture"));
+}
+
+QString OverlayPanel::sharesText() const {
+    if (m_job.isRunning()) return tr("Drawing…");
+    if (!m_shares || !(m_sharesOf == sharedPicture(m_services.scene()))) return {};
+    const auto percent = [this](double share) { // of all that is seen
+        return tr("%1 %").arg(100 * share / std::max(m_shares->alpha, 1e-9), 0, 'f', 1);
+    };
+    QStringList parts{tr("overlay %1").arg(percent(m_shares->overlay))};
+    for (std::size_t f = 0; f < m_shares->features.size(); ++f)
+        parts << QString::fromStdString(m_sharesOf.tf.features[f].name) + ' ' + percent(m_shares->features[f]);
+    if (m_shares->rest > 0.001 * m_shares->alpha) parts << tr("other values %1").arg(percent(m_shares->rest));
+    return tr("Seen in the picture: %1.").arg(parts.join(", "));
 }
 
 QString OverlayPanel::stateText() const {
@@ -117,7 +171,7 @@ QString OverlayPanel::stateText() const {
     if (view.isNone())
         return tr("A second volume over this one, such as a t-map on its anatomy or a dose on its CT, with colours of "
                   "its own.");
-    QStringList lines{tr("Figures are of the volume alone: the overlay hides nothing in them.")};
+    QStringList lines{tr("Figures in the panel Features are of the volume alone: the overlay hides nothing in them.")};
     if (scene.overlay) {
         const ValueRange& values = scene.overlay->volume->dataRange();
         lines.prepend(tr("Values %1 to %2.").arg(values.lo, 0, 'g', 4).arg(values.hi, 0, 'g', 4));
@@ -143,6 +197,10 @@ void OverlayPanel::follow() {
     m_colorMap->setEnabled(view.isDrawn() && !view.curve);
     m_openCurve->setEnabled(view.isDrawn());
     m_removeCurve->setEnabled(view.isDrawn() && view.curve);
+    m_computeShares->setEnabled(view.isDrawn() && !m_job.isRunning());
+    const QString shares = sharesText();
+    m_sharesText->setText(shares);
+    m_sharesText->setVisible(!shares.isEmpty());
     m_state->setText(stateText());
 }
 

@@ -1,0 +1,74 @@
+#include "controllers/orientation_controller.h"
+
+#include <glm/common.hpp>
+
+#include "controllers/open_controller.h"
+#include "dialogs/axes_dialog.h"
+#include "services/services.h"
+#include "session/variable_edits.h"
+
+namespace pellucid::gui {
+namespace {
+
+/// The world's axis that a direction is nearest to, 0, 1 or 2.
+int nearestAxis(const Vec3& direction) {
+    const Vec3 size = glm::abs(direction);
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+} // namespace
+
+void OrientationController::addActions() {
+    SessionStore& store = m_services.store();
+    const auto canTurn = [this, &store] { return m_services.isEditable() && store.hasVolume(); };
+    ActionMenu menu(m_services.actions(), tr("&Edit") + "/" + tr("&Orientation of the data"), canTurn);
+    const auto addTurn = [&](const char* id, const QString& text, const QString& tip, auto about) {
+        menu.add(id, text, {}, tip,
+                 [this, &store, about, step = QString(text).remove('&')] { turn(step, about(store.scene().camera)); });
+    };
+    addTurn("turnLeftAction", tr("Turn &left"), tr("A quarter turn: what faces you goes to the left"),
+            [](const Camera& c) { return -c.trueUp(); });
+    addTurn("turnRightAction", tr("Turn &right"), tr("A quarter turn: what faces you goes to the right"),
+            [](const Camera& c) { return c.trueUp(); });
+    addTurn("tipForwardAction", tr("Tip &forward"), tr("A quarter turn: the top comes toward you"),
+            [](const Camera& c) { return c.right(); });
+    addTurn("tipBackAction", tr("Tip &back"), tr("A quarter turn: the top goes away from you"),
+            [](const Camera& c) { return -c.right(); });
+    addTurn("turnClockwiseAction", tr("Turn &clockwise"), tr("A quarter turn in the picture"),
+            [](const Camera& c) { return c.forward(); });
+    addTurn("turnAnticlockwiseAction", tr("Turn &anticlockwise"), tr("A quarter turn in the picture"),
+            [](const Camera& c) { return -c.forward(); });
+    menu.separate();
+    menu.add("mirrorAction", tr("&Mirror"), {},
+             tr("Left and right change places: for files that were written the wrong way round"),
+             [this, &store] { mirror(store.scene().camera.right()); });
+    menu.separate();
+    menu.add("sayAxesAction", tr("&Say how the axes run…"), {},
+             tr("Which way each axis of the file points: left, front, head, or along x, y, z"), [this] { choose(); });
+    menu.add("axesOfFileAction", tr("As in the &file"), {}, tr("What the file says of its orientation holds again"),
+             [this] { set(tr("Orientation of the file"), {}); },
+             {.enabled = [this, canTurn] { return canTurn() && m_services.scene().data->inFile.has_value(); }});
+}
+
+GridAxes OrientationController::now() const { return nearestAxes(m_services.scene().data->geometry()); }
+
+void OrientationController::turn(const QString& text, const Vec3& about) {
+    const int axis = nearestAxis(about);
+    GridAxes axes = now();
+    for (int quarter = about[axis] > 0 ? 1 : 3; quarter > 0; --quarter) axes = turned(axes, axis);
+    set(text, axes);
+}
+
+void OrientationController::mirror(const Vec3& along) { set(tr("Mirror"), mirrored(now(), nearestAxis(along))); }
+
+void OrientationController::set(const QString& text, const std::optional<GridAxes>& axes) {
+    m_opening.editData(text,
+                       [axes, data = m_services.scene().data](Session& session) { turnData(session, *data, axes); });
+}
+
+void OrientationController::choose() {
+    AxesDialog dialog(now(), m_services.scene().data->dims(), m_services.window());
+    if (dialog.exec() == QDialog::Accepted) set(tr("Orientation"), dialog.axes());
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,114 @@
+// Data that are turned, mirrored, or whose axes the user names.
+#include "gui_support.h"
+
+#include <QAction>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QTimer>
+
+#include <glm/geometric.hpp>
+
+#include "dialogs/axes_dialog.h"
+#include "volume/orientation.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+const Geometry& geometryOf(OpenWindow& w) { return w.services().scene().volume->geometry(); }
+
+void trigger(OpenWindow& w, const char* action) {
+    w.child<QAction>(action).trigger();
+    w.settle();
+}
+
+/// Where a direction of the grid points in the picture: x to the right, y up, z toward the viewer.
+Vec3 seen(OpenWindow& w, const Vec3& voxels) {
+    const Camera& c = w.services().scene().camera;
+    const Vec3 world = geometryOf(w).worldFromIndex() * voxels;
+    return {glm::dot(world, c.right()), glm::dot(world, c.trueUp()), -glm::dot(world, c.forward())};
+}
+
+void lookFromTheFront(OpenWindow& w) {
+    w.child<QAction>("view1").trigger();
+    w.settle();
+}
+
+} // namespace
+
+TEST_CASE("quarter turns go the way the picture shows, and undo", "[gui][orientation]") {
+    OpenWindow w;
+    lookFromTheFront(w); // i to the right, k up, j away from the viewer
+    const Vec3 near(0, -1, 0), top(0, 0, 1), left(-1, 0, 0);
+    REQUIRE(seen(w, near).z == Approx(1));
+    const QImage before = w.picture();
+    const struct {
+        const char* action;
+        Vec3 what, goes; // voxels; in the picture
+    } turns[] = {{"turnLeftAction", near, {-1, 0, 0}},    {"turnRightAction", near, {1, 0, 0}},
+                 {"tipForwardAction", top, {0, 0, 1}},    {"tipBackAction", top, {0, 0, -1}},
+                 {"turnClockwiseAction", top, {1, 0, 0}}, {"turnAnticlockwiseAction", top, {-1, 0, 0}},
+                 {"mirrorAction", left, {1, 0, 0}}};
+    for (const auto& turn : turns) {
+        INFO(turn.action);
+        trigger(w, turn.action);
+        const Vec3 now = seen(w, turn.what);
+        for (int axis = 0; axis < 3; ++axis) CHECK(now[axis] == Approx(turn.goes[axis]).margin(1e-9));
+        CHECK(largestDifference(before, w.picture()) > 30);
+        w.document().undo();
+        w.settle();
+        CHECK(axesText(geometryOf(w)) == "+x, +y, +z");
+        CHECK(largestDifference(before, w.picture()) <= 2);
+    }
+}
+
+TEST_CASE("measures go along with data that are turned", "[gui][orientation]") {
+    OpenWindow w;
+    const Vec3 a(4, 5, 6), b(20, 9, 11); // voxels
+    editPart(w.services().store(), &Session::rulers, "Measure", {}, [&](std::vector<Ruler>& rulers) {
+        addRuler(rulers, {.points = {geometryOf(w).worldFromVoxel(a), geometryOf(w).worldFromVoxel(b)}});
+    });
+    trigger(w, "tipForwardAction");
+    const Ruler& ruler = w.services().scene().session.rulers->front();
+    const Vec3 first = geometryOf(w).voxelFromWorld(ruler.points[0]);
+    for (int axis = 0; axis < 3; ++axis) CHECK(first[axis] == Approx(a[axis]));
+}
+
+TEST_CASE("who names the axes of a patient gets the words of anatomy, and the file's back", "[gui][orientation]") {
+    OpenWindow w;
+    QAction& ofFile = w.child<QAction>("axesOfFileAction");
+    CHECK_FALSE(ofFile.isEnabled());
+    bool looked = false;
+    QTimer::singleShot(0, &w.window, [&] {
+        auto* dialog = w.window.findChild<AxesDialog*>("axesDialog");
+        if (dialog == nullptr) return;
+        auto* ok = dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Ok);
+        auto* verdict = dialog->findChild<QLabel*>("axesVerdict");
+        const auto along = [&](const char* axis) { return dialog->findChild<QComboBox*>(axis); };
+        CHECK(along("axesAlongi")->currentText() == "+x");
+        dialog->findChild<QCheckBox*>("axesPatient")->setChecked(true);
+        CHECK(along("axesAlongi")->currentText() == "left");
+        along("axesAlongj")->setCurrentText("head");
+        CHECK_FALSE(ok->isEnabled()); // k points there, too
+        CHECK(verdict->text().contains("direction of its own"));
+        along("axesAlongk")->setCurrentText("back");
+        CHECK(ok->isEnabled());
+        CHECK(verdict->text().contains("mirror"));
+        along("axesAlongk")->setCurrentText("front");
+        CHECK(verdict->text().isEmpty());
+        looked = true;
+        dialog->accept();
+    });
+    trigger(w, "sayAxesAction");
+    REQUIRE(looked);
+    CHECK(axesText(geometryOf(w)) == "R→L, I→S, P→A");
+    CHECK(w.child<QAction>("view1").text() == "Anterior");
+    CHECK(ofFile.isEnabled());
+    trigger(w, "axesOfFileAction");
+    CHECK(axesText(geometryOf(w)) == "+x, +y, +z");
+    CHECK_FALSE(ofFile.isEnabled());
+}

@@ -1,0 +1,105 @@
+// How the axes of a grid run where the user says it.
+#include <catch2/catch.hpp>
+
+#include "base/error.h"
+#include "volume/grid_axes.h"
+#include "volume/loader.h"
+#include "volume/orientation.h"
+
+using namespace pellucid;
+
+namespace {
+
+VolumeSource wholeSample() {
+    VolumeSource source;
+    source.path = "sample:knee";
+    source.sampleSize = 24;
+    return source;
+}
+
+void checkNear(const Vec3& a, const Vec3& b) {
+    for (int axis = 0; axis < 3; ++axis) CHECK(a[axis] == Approx(b[axis]).margin(1e-9));
+}
+
+} // namespace
+
+TEST_CASE("axes are written as letters of a patient, or along x, y and z", "[orientation]") {
+    const GridAxes lps = parseGridAxes("LPS");
+    CHECK(lps.patient);
+    CHECK(lps.along == std::array<int, 3>{1, 2, 3}); // the world is LPS
+    CHECK(parseGridAxes("RAS").along == std::array<int, 3>{-1, -2, 3});
+    CHECK(parseGridAxes("SAL").along == std::array<int, 3>{3, -2, 1});
+    const GridAxes file = parseGridAxes("+y-x+z");
+    CHECK_FALSE(file.patient);
+    CHECK(file.along == std::array<int, 3>{2, -1, 3});
+    for (const char* text : {"LPS", "RAS", "IRP", "+x+y+z", "-z+x-y"}) CHECK(gridAxesText(parseGridAxes(text)) == text);
+    for (const char* text : {"", "LP", "LRS", "lps", "LPSX", "+x+y", "+x+y+x", "xyzxyz", "+x+y+w", "++x-y+"})
+        CHECK_THROWS_AS(parseGridAxes(text), UsageError);
+}
+
+TEST_CASE("the axes nearest to an oblique grid are those that a reader would name", "[orientation]") {
+    Geometry g;
+    g.dims = {4, 4, 4};
+    // i and j both lean more toward x than toward any other axis; together they can only be x and y.
+    g.directions = {Vec3(0.9, 0.43589, 0), Vec3(0.75, -0.66144, 0), Vec3(0, 0, -1)};
+    CHECK(gridAxesText(nearestAxes(g)) == "+x-y-z");
+    g.worldAxes = WorldAxes::Patient;
+    CHECK(gridAxesText(nearestAxes(g)) == "LAI");
+}
+
+TEST_CASE("four quarter turns and two mirrors change nothing, and one turns as a screw does", "[orientation]") {
+    const GridAxes start = parseGridAxes("+x+y+z");
+    CHECK(gridAxesText(turned(start, 2)) == "+y-x+z"); // around z what pointed to +x points to +y
+    CHECK(gridAxesText(turned(start, 0)) == "+x+z-y");
+    CHECK(gridAxesText(turned(start, 1)) == "-z+y+x");
+    for (int axis = 0; axis < 3; ++axis) {
+        GridAxes axes = start;
+        for (int n = 0; n < 4; ++n) {
+            axes = turned(axes, axis);
+            CHECK_FALSE(isMirrored(axes));
+            CHECK(isComplete(axes));
+        }
+        CHECK(axes == start);
+        CHECK(isMirrored(mirrored(start, axis)));
+        CHECK(mirrored(mirrored(start, axis), axis) == start);
+    }
+    CHECK_FALSE(isComplete(GridAxes{{1, -1, 3}, false}));
+}
+
+TEST_CASE("data that are turned keep their values, their middle and their spacing", "[orientation]") {
+    VolumeSource source = wholeSample();
+    const Volume before = loadVolume(source);
+    source.axes = parseGridAxes("ILA");
+    const Volume after = loadVolume(source);
+    CHECK(axesText(after.geometry()) == "S→I, R→L, P→A");
+    CHECK(after.geometry().spacing == before.geometry().spacing);
+    checkNear(after.geometry().boxCenter(), before.geometry().boxCenter());
+    CHECK(after.samples() == before.samples());
+    CHECK(after.range() == before.range());
+    REQUIRE(after.inFile);
+    CHECK(after.inFile->directions == before.geometry().directions);
+
+    const Volume back = withAxes(after, {});
+    CHECK(back.geometry().directions == before.geometry().directions);
+    CHECK(back.geometry().worldAxes == before.geometry().worldAxes);
+    checkNear(back.geometry().origin, before.geometry().origin);
+    CHECK_FALSE(back.inFile);
+    // Said twice it is as said once.
+    const Volume twice = withAxes(after, source.axes);
+    checkNear(twice.geometry().origin, after.geometry().origin);
+    checkNear(withAxes(twice, {}).geometry().origin, before.geometry().origin);
+}
+
+TEST_CASE("parts and coarser copies of turned data lie where they lay in the whole", "[orientation]") {
+    VolumeSource source = wholeSample();
+    source.axes = parseGridAxes("-z+x-y");
+    const Geometry whole = loadVolume(source).geometry();
+    source.region = VoxelRegion{{3, 2, 5}, {19, 12, 18}};
+    const Geometry part = loadVolume(source).geometry();
+    checkNear(part.worldFromVoxel({0, 0, 0}), whole.worldFromVoxel({3, 2, 5}));
+    checkNear(part.worldFromVoxel({15, 9, 12}), whole.worldFromVoxel({18, 11, 17}));
+    source.downsample = 2;
+    const Geometry coarse = loadVolume(source).geometry();
+    // Voxel 1 along each axis is the mean of voxels 2 and 3 of the part, 5 and 6 of the whole along i.
+    checkNear(coarse.worldFromVoxel({1, 1, 1}), whole.worldFromVoxel({5.5, 4.5, 7.5}));
+}
