@@ -212,9 +212,8 @@ TEST_CASE("a newcomer comes from an own CT to a film in fourteen actions", "[gui
 
     // A distance is measured.
     hand.choose("Measure", "Distance");
-    if (qEnvironmentVariableIsSet("NEWCOMER")) w.window.grab().save(qEnvironmentVariable("NEWCOMER"));
-    hand.clickAt(w.view(), seenAt(w, {-30, -60, 40}), "a point of the head");
-    hand.clickAt(w.view(), seenAt(w, {30, -60, 40}), "another one");
+    hand.clickAt(w.view(), seenAt(w, {-35, -40, 30}), "a point of the skull");
+    hand.clickAt(w.view(), seenAt(w, {25, -45, -35}), "another one");
     w.settle();
     INFO(said.toStdString());
     REQUIRE(w.services().scene().session.rulers->size() == 1);
