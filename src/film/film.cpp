@@ -142,7 +142,7 @@ std::span<const Setting> settingsOf<FilmSettings>() {
          .used = hasLength},
         {.key = "fps",
          .at = member<&F::framesPerSecond>,
-         .words = "&Pictures a second",
+         .words = "&Frames per second",
          .help = "How many pictures the film shows in a second.",
          .range = {0, 120, NumberRange::Open::Low}},
         {.key = "degrees",

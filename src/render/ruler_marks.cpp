@@ -15,7 +15,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr Rgb kInk{1.0, 0.85, 0.30}, kSelectedInk{0.45, 0.72, 1.0}; ///< with a dark halo seen on any ground
+constexpr Rgb kInk{1.0, 0.85, 0.30}, kSelectedInk{0.80, 0.91, 1.0}; ///< with a dark halo seen on any ground
 constexpr double kFaint = 0.4;                                      ///< alpha of what lies beside a slice
 constexpr double kRing = 3.5;    ///< radius of the ring at an end, lengths of the screen
 constexpr double kArc = 0.3;     ///< radius of an angle's arc, of the shorter leg

@@ -12,6 +12,7 @@
 #include "tf/hsb_colors.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
+#include "volume/mirror_image.h"
 
 namespace pellucid {
 
@@ -501,8 +502,14 @@ AnnotationInput annotationInput(const PictureInput& picture, const AnnotationCho
         constexpr double kGrey = 0.8;
         for (ControlPoint& p : tf.points) p.color = {kGrey, kGrey, kGrey};
     }
-    return {show,           picture.camera, volume.geometry(), std::move(tf),
-            volume.range(), volume.title,   picture.settings,  density};
+    return {show,
+            picture.camera,
+            volume.geometry(),
+            std::move(tf),
+            volume.range(),
+            isMirrorImage(volume) ? volume.title + ", mirrored" : volume.title,
+            picture.settings,
+            density};
 }
 
 RulerReadings readRulers(const std::vector<Ruler>& rulers, const Volume& volume, const JobControl& job) {

@@ -199,7 +199,7 @@ std::span<const Setting> settingsOf<OverlayView>() {
         const O& overlay = *static_cast<const O*>(o);
         return overlay.isDrawn() && !overlay.curve;
     };
-    static constexpr const char* kSides[] = {"As the values are", "From the threshold on", "Both signs"};
+    static constexpr const char* kSides[] = {"Automatic", "From the threshold on", "Both signs"};
     static const Setting kSettings[] = {
         {.key = "shown", .at = member<&O::shown>, .words = "&Overlay", .help = "Draw the overlay.", .option = ""},
         {.key = "sides",

@@ -9,6 +9,7 @@
 #include <QPushButton>
 #include <QSignalSpy>
 #include <QSlider>
+#include <QToolButton>
 
 #include <glm/geometric.hpp>
 
@@ -142,7 +143,7 @@ TEST_CASE("an oblique plane is added, moved, turned, flipped and removed", "[cli
     CHECK(glm::dot(turned.normal, added.normal) > std::cos(20.0 / 64 + 1e-6));
     CHECK(glm::dot(turned.normal, anchor) == Approx(turned.offset));
 
-    w.child<QPushButton>("flipPlane1").click();
+    w.child<QToolButton>("flipPlane1").click();
     CHECK(clippingOf(w).planes[0] == ClipPlane{-turned.normal, -turned.offset});
     w.child<QDoubleSpinBox>("clipPlane1D").setValue(5);
     CHECK(clippingOf(w).planes[0].offset == 5);
@@ -151,7 +152,7 @@ TEST_CASE("an oblique plane is added, moved, turned, flipped and removed", "[cli
     CHECK(clippingOf(w).planes.size() == kMostClipPlanes);
     CHECK_FALSE(w.child<QAction>("addPlaneAction").isEnabled());
     CHECK_FALSE(w.child<QPushButton>("addPlaneButton").isEnabled());
-    w.child<QPushButton>("removePlane1").click();
+    w.child<QToolButton>("removePlane1").click();
     CHECK(clippingOf(w).planes.size() == kMostClipPlanes - 1);
     w.child<QPushButton>("resetClipButton").click();
     CHECK(clippingOf(w).isNone());

@@ -112,7 +112,7 @@ TEST_CASE("two clicks in the picture measure the distance of what is seen there"
     CHECK(w.controllers().probe.isActive());
 }
 
-TEST_CASE("clicks beside the volume set no point, Esc gives up, drags turn the view", "[measures]") {
+TEST_CASE("clicks beside the volume set no point, Esc cancels, drags turn the view", "[measures]") {
     OpenWindow w(24);
     QSignalSpy said(&w.services(), &Services::message);
     trigger(w, "measureDistanceAction");

@@ -6,12 +6,14 @@
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QLabel>
+#include <QMessageBox>
 #include <QPushButton>
 #include <QTimer>
 
 #include <glm/geometric.hpp>
 
 #include "dialogs/axes_dialog.h"
+#include "session/variable_edits.h"
 #include "volume/orientation.h"
 
 using namespace pellucid;
@@ -64,6 +66,38 @@ TEST_CASE("quarter turns go the way the picture shows, and undo", "[gui][orienta
         CHECK(axesText(geometryOf(w)) == "+x, +y, +z");
         CHECK(largestDifference(before, w.picture()) <= 2);
     }
+}
+
+TEST_CASE("a note stays as long as the data do not lie as the file says", "[gui][orientation]") {
+    OpenWindow w;
+    const auto& note = w.child<QLabel>("noticeText");
+    trigger(w, "turnLeftAction");
+    CHECK(note.text().contains("Turned: the data do not lie as the file says."));
+    trigger(w, "mirrorAction");
+    CHECK(note.text().contains("Mirrored: left and right are not as in the file."));
+    CHECK_FALSE(note.text().contains("Turned"));
+    CHECK(annotationInput(pictureInput(w.services().scene(), 64, 48), {}).title == "shells, mirrored");
+    w.child<QPushButton>("noticeChoice0").click();
+    w.settle();
+    CHECK_FALSE(note.text().contains("Mirrored"));
+    CHECK(axesText(geometryOf(w)) == "+x, +y, +z");
+    CHECK(annotationInput(pictureInput(w.services().scene(), 64, 48), {}).title == "shells");
+}
+
+TEST_CASE("a patient is not mirrored without a question", "[gui][orientation]") {
+    OpenWindow w;
+    w.opening().editData("A patient", [](Session& s) { setDataAxes(s, parseGridAxes("LPS")); });
+    w.settle();
+    const auto answer = [&](QMessageBox::StandardButton with) {
+        QTimer::singleShot(0, &w.window, [&w, with] {
+            for (auto* box : w.window.findChildren<QMessageBox*>()) box->button(with)->click();
+        });
+        trigger(w, "mirrorAction");
+    };
+    answer(QMessageBox::Cancel);
+    CHECK(axesText(geometryOf(w)) == "R→L, A→P, I→S");
+    answer(QMessageBox::Yes);
+    CHECK(axesText(geometryOf(w)) != "R→L, A→P, I→S");
 }
 
 TEST_CASE("measures go along with data that are turned", "[gui][orientation]") {

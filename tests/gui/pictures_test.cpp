@@ -229,7 +229,7 @@ TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
 TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w(64);
-    w.window.resize(1280, 860);
+    w.window.resize(1400, 980);
     VolumeSource source;
     source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
     w.opening().openVolume(source, "tents:3");

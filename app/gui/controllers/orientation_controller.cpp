@@ -1,11 +1,14 @@
 #include "controllers/orientation_controller.h"
 
+#include <QMessageBox>
+
 #include <glm/common.hpp>
 
 #include "controllers/open_controller.h"
 #include "dialogs/axes_dialog.h"
 #include "services/services.h"
 #include "session/variable_edits.h"
+#include "volume/mirror_image.h"
 
 namespace pellucid::gui {
 namespace {
@@ -17,6 +20,14 @@ int nearestAxis(const Vec3& direction) {
 }
 
 } // namespace
+
+OrientationController::OrientationController(Services& services, OpenController& opening)
+    : m_services(services), m_opening(opening) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.data != after.data) tell();
+    });
+    connect(&opening, &OpenController::opened, this, &OrientationController::tell); // its notices have taken this away
+}
 
 void OrientationController::addActions() {
     SessionStore& store = m_services.store();
@@ -43,10 +54,11 @@ void OrientationController::addActions() {
              tr("Left and right change places: for files that were written the wrong way round"),
              [this, &store] { mirror(store.scene().camera.right()); });
     menu.separate();
-    menu.add("sayAxesAction", tr("&Say how the axes run…"), {},
+    menu.add("sayAxesAction", tr("&Set axis directions…"), {},
              tr("Which way each axis of the file points: left, front, head, or along x, y, z"), [this] { choose(); });
-    menu.add("axesOfFileAction", tr("As in the &file"), {}, tr("What the file says of its orientation holds again"),
-             [this] { set(tr("Orientation of the file"), {}); },
+    menu.add("axesOfFileAction", tr("Reset to &file orientation"), {},
+             tr("What the file says of its orientation holds again"),
+             [this] { set(tr("Reset to file orientation"), {}); },
              {.enabled = [this, canTurn] { return canTurn() && m_services.scene().data->inFile.has_value(); }});
 }
 
@@ -59,11 +71,30 @@ void OrientationController::turn(const QString& text, const Vec3& about) {
     set(text, axes);
 }
 
-void OrientationController::mirror(const Vec3& along) { set(tr("Mirror"), mirrored(now(), nearestAxis(along))); }
+void OrientationController::mirror(const Vec3& along) {
+    if (m_services.scene().data->geometry().worldAxes == WorldAxes::Patient &&
+        QMessageBox::question(m_services.window(), tr("Mirror"),
+                              tr("What is on the patient's left will be shown on the right. Mirror only data that you "
+                                 "know were written the wrong way round. Mirror?"),
+                              QMessageBox::Yes | QMessageBox::Cancel, QMessageBox::Cancel) != QMessageBox::Yes)
+        return;
+    set(tr("Mirror"), mirrored(now(), nearestAxis(along)));
+}
+
+void OrientationController::tell() {
+    Notices& notices = m_services.notices();
+    if (!m_told.isEmpty()) notices.remove(m_told);
+    m_told.clear();
+    const auto& data = m_services.scene().data;
+    if (!data || !data->inFile) return;
+    m_told = isMirrorImage(*data) ? tr("Mirrored: left and right are not as in the file.")
+                                  : tr("Turned: the data do not lie as the file says.");
+    notices.add({m_told, {{tr("Reset to file orientation"), [this] { set(tr("Reset to file orientation"), {}); }}}});
+}
 
 void OrientationController::set(const QString& text, const std::optional<GridAxes>& axes) {
-    m_opening.editData(text,
-                       [axes, data = m_services.scene().data](Session& session) { turnData(session, *data, axes); });
+    const auto change = [axes, data = m_services.scene().data](Session& session) { turnData(session, *data, axes); };
+    m_opening.editData(text, change, [this] { tell(); });
 }
 
 void OrientationController::choose() {

@@ -13,7 +13,7 @@ class Services;
 class OrientationController : public QObject {
     Q_OBJECT
 public:
-    OrientationController(Services& services, OpenController& opening) : m_services(services), m_opening(opening) {}
+    OrientationController(Services& services, OpenController& opening);
 
     void addActions();
     /// Asks how the axes run.
@@ -24,10 +24,12 @@ private:
     /// A quarter turn about a direction of the world, or about the axis nearest to it, the way a screw goes in.
     void turn(const QString& text, const Vec3& about);
     void mirror(const Vec3& along);
+    void tell(); ///< as long as the data do not lie as the file says
     void set(const QString& text, const std::optional<GridAxes>& axes); ///< empty: as the file says
 
     Services& m_services;
     OpenController& m_opening;
+    QString m_told; ///< the notice that is shown
 };
 
 } // namespace pellucid::gui

@@ -143,10 +143,14 @@ void PictureSaliencyController::addActions() {
         "followPictureAction", tr("&Show 2D feature saliency"), "Shift+D",
         tr("How much of what catches the eye in this picture each feature has, whenever the picture rests"),
         [&store] { return store.session().pictureSaliency->on; },
-        [&store] {
+        [this, &store] {
             const bool on = !store.session().pictureSaliency->on;
             editPart(store, &Session::pictureSaliency, on ? tr("2D feature saliency") : tr("No 2D feature saliency"),
-                     {}, [on](PictureSaliencyView& view) { view.on = on; });
+                     {}, [on](PictureSaliencyView& view) {
+                         view.on = on;
+                         if (on && view.map == SaliencyMapShown::None) view.map = SaliencyMapShown::Picture;
+                     });
+            if (on) m_services.panels().show("pictureSaliency");
         });
     menu.separate();
     menu.add("saveSaliencyMapAction", tr("Save saliency &map…"), {},

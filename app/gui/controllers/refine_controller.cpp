@@ -404,8 +404,8 @@ void RefineController::setSelecting(Selecting what) {
     if (what == m_selecting) return;
     m_selecting = what;
     if (what == Selecting::Rectangle)
-        Q_EMIT m_services.message(tr("Drag a rectangle over what should stand out; Esc gives up"));
-    if (what == Selecting::Lasso) Q_EMIT m_services.message(tr("Draw round what should stand out; Esc gives up"));
+        Q_EMIT m_services.message(tr("Drag a rectangle over what should stand out; Esc cancels"));
+    if (what == Selecting::Lasso) Q_EMIT m_services.message(tr("Draw round what should stand out; Esc cancels"));
     Q_EMIT selectingChanged();
 }
 

@@ -157,7 +157,7 @@ QString RulerController::hint() const {
           tr("Click on the end of the other leg")},
          {tr("Click on the centre of the sphere"), tr("Click where its surface is to be"), {}},
          {tr("Click on the centre of the box"), tr("Click where one of its faces is to be"), {}}}};
-    return tr("%1 · Esc gives up")
+    return tr("%1 · Esc cancels")
         .arg(kHints.at(static_cast<std::size_t>(*m_placing)).at(std::min<std::size_t>(2, m_points.size())));
 }
 

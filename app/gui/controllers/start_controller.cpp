@@ -89,6 +89,17 @@ StartController::StartController(Services& services, OpenController& opening)
     connect(&m_tuning, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::busyChanged, this, &StartController::busyChanged);
     services.showFailuresOf(m_again, tr("Automatic start failed"));
+    // Who has other features knows better.
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        const auto names = [](const Scene& scene) {
+            std::vector<std::string> all;
+            for (const Feature& feature : scene.tf.features) all.push_back(feature.name);
+            return all;
+        };
+        if (m_said.isEmpty() || before.data != after.data || names(before) == names(after)) return;
+        m_services.notices().remove(m_said);
+        m_said.clear();
+    });
 }
 
 void StartController::addActions() {
@@ -121,7 +132,8 @@ void StartController::cancel() {
 }
 
 void StartController::say(const Proposal& proposal) {
-    if (const QString text = recognisedText(proposal); !text.isEmpty()) m_services.notices().add({text});
+    m_said = recognisedText(proposal);
+    if (!m_said.isEmpty()) m_services.notices().add({m_said});
     const QString beyond = beyondText(proposal, m_services.scene().data->dataRange());
     if (beyond.isEmpty()) return;
     const auto showAll = [this] {

@@ -40,6 +40,7 @@ private:
 
     Services& m_services;
     OpenController& m_opening;
+    QString m_said; ///< of what was recognised, as long as it stands
     Job<Scene, FirstSight> m_tuning;
     Job<Request, AutomaticStart> m_again;
 };

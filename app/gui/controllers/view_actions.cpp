@@ -109,7 +109,7 @@ QAction& addClipHandlesAction(Services& services) {
     return *menu.addCheck(
         "clipHandlesAction", QObject::tr("Clip &handles"), "C",
         QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with Shift the "
-                    "opposite face goes along; Esc gives up"),
+                    "opposite face goes along; Esc cancels"),
         [shown] { return *shown; }, [shown] { *shown = !*shown; }, true);
 }
 

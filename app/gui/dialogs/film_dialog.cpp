@@ -16,8 +16,10 @@
 
 #include "dialogs/closing_buttons.h"
 #include "render/render_settings.h"
+#include "widgets/controls.h"
 #include "widgets/layouts.h"
 #include "widgets/named.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {
@@ -64,6 +66,10 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
     connect(addView, &QPushButton::clicked, this, &FilmDialog::addPresentView);
     connect(browseButton, &QPushButton::clicked, this, &FilmDialog::browse);
 
+    auto* const note = wrappedLabel("filmFormats", this);
+    note->setText(tr("A name that ends in .mp4 makes a film, which needs ffmpeg. Any other name makes a folder of "
+                     "pictures."));
+    makeFaint(*note);
     auto* const form = inset(new QFormLayout(this), {18, 16, 18, 12});
     form->setVerticalSpacing(9);
     form->addRow(tr("&Kind"), m_kind);
@@ -72,11 +78,12 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
     views->setLayout(inset(rowOf({{m_views, 1}, addView}), {}));
     form->addRow(tr("&Views"), views);
     form->addRow(tr("&Length"), m_seconds);
-    form->addRow(tr("&Pictures a second"), m_rate);
+    form->addRow(tr("&Frames per second"), m_rate);
     form->addRow(tr("Size"), m_preset);
     form->addRow(QString(), rowOf({m_width, new QLabel(QStringLiteral("×"), this), m_height, Cell::rest()}));
     form->addRow(QString(), m_annotated);
-    form->addRow(tr("&File or folder"), rowOf({{m_path, 1}, browseButton}));
+    addRow(*form, tr("&File or folder"), m_path, rowOf({{m_path, 1}, browseButton}));
+    form->addRow(QString(), note);
     form->addRow(QString(), m_summary);
     form->addRow(closingButtons(*this, QDialogButtonBox::Save | QDialogButtonBox::Cancel));
     m_ofTurntable = {m_degrees, form->labelForField(m_degrees)};

@@ -39,9 +39,9 @@ StudyViewDialog::StudyViewDialog(const QString& study, const QStringList& featur
     });
     auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});
     form->setVerticalSpacing(9);
-    form->addRow(tr("&Study"), rowOf({{m_study, 1}, browse}));
+    addRow(*form, tr("&Study"), m_study, rowOf({{m_study, 1}, browse}));
     form->addRow(tr("&Feature"), m_feature);
-    form->addRow(tr("&Word for it"), m_label);
+    form->addRow(tr("&Name shown to participants"), m_label);
     form->addRow(QString(), m_training);
     auto* buttons = closingButtons(*this, QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
     buttons->button(QDialogButtonBox::Ok)->setText(tr("Add"));

@@ -110,7 +110,7 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
     PlaneRow row{named(new QWidget, QStringLiteral("clipPlane%1").arg(index + 1)), {}};
     auto* grid = new QGridLayout(row.widget);
     grid->setContentsMargins(0, 0, 0, 0);
-    grid->setHorizontalSpacing(6);
+    grid->setHorizontalSpacing(4);
     grid->setVerticalSpacing(3);
     grid->addWidget(new QLabel(tr("Plane %1").arg(index + 1)), 0, 0);
     const char* const names[] = {"X", "Y", "Z", "D"};
@@ -123,7 +123,7 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
         withLook(box, {-1e9, 1e9, 3, 0.05});
         // As wide as there is room, whatever the range.
         box->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
-        box->setMinimumWidth(64);
+        box->setMinimumWidth(60);
         row.boxes[static_cast<std::size_t>(number)] = box;
         grid->addWidget(box, number / 3, number % 3 + 1);
         connect(box, &QDoubleSpinBox::valueChanged, this,
@@ -131,17 +131,17 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
     }
     grid->addWidget(new QLabel(tr("Distance")), 1, 0);
     for (int column = 1; column < 4; ++column) grid->setColumnStretch(column, 1);
-    auto* flip = named(new QPushButton(tr("Flip")), QStringLiteral("flipPlane%1").arg(index + 1),
+    auto* flip = named(toolButton(tr("Flip"), row.widget), QStringLiteral("flipPlane%1").arg(index + 1),
                        tr("Keep the other side of the plane"));
-    auto* remove = named(new QPushButton(tr("Remove")), QStringLiteral("removePlane%1").arg(index + 1));
+    auto* remove = named(toolButton(tr("Remove"), row.widget), QStringLiteral("removePlane%1").arg(index + 1));
     grid->addWidget(flip, 1, 2);
     grid->addWidget(remove, 1, 3);
-    connect(flip, &QPushButton::clicked, this, [this, index] {
+    connect(flip, &QToolButton::clicked, this, [this, index] {
         changePlanes(tr("Flip plane"), [index](std::vector<ClipPlane>& planes) {
             planes.at(index) = {-planes.at(index).normal, -planes.at(index).offset};
         });
     });
-    connect(remove, &QPushButton::clicked, this, [this, index] {
+    connect(remove, &QToolButton::clicked, this, [this, index] {
         changePlanes(tr("Remove plane"), [index](std::vector<ClipPlane>& planes) {
             planes.erase(planes.begin() + static_cast<std::ptrdiff_t>(index));
         });

@@ -20,7 +20,7 @@ constexpr int kBar = 10;
 QString percent(double value) { return QObject::tr("%1 %").arg(100 * value, 0, 'f', 1); }
 QString signedPercent(double value) {
     const QString sign = value > 0 ? QStringLiteral("+") : value < 0 ? QString(QChar(0x2212)) : QString();
-    return sign + percent(std::abs(value));
+    return sign + QObject::tr("%1 points").arg(100 * std::abs(value), 0, 'f', 1);
 }
 
 } // namespace

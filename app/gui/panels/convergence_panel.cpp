@@ -13,6 +13,7 @@
 #include "jobs/rest_timer.h"
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
+#include "panels/plot_words.h"
 #include "report/convergence.h"
 #include "report/csv.h"
 #include "store/edits.h"
@@ -284,7 +285,7 @@ void ConvergencePanel::drawPlots() {
     m_log->setEnabled(any);
     if (!isVisible()) return;
     std::vector<Plot> all = plots();
-    for (std::size_t i = 0; i < m_plots.size(); ++i) m_plots[i]->setPlot(std::move(all[i]));
+    for (std::size_t i = 0; i < m_plots.size(); ++i) m_plots[i]->setPlot(inWords(std::move(all[i])));
     if (!any)
         m_readOut->setText(tr("Optimize, and the moves are drawn here."));
     else if (!m_plots[0]->underMouse() && !m_plots[1]->underMouse() && !m_plots[2]->underMouse())

@@ -39,10 +39,11 @@ namespace pellucid::gui {
 namespace {
 
 constexpr int kRowHeight = 26;
-constexpr int kSwatch = 26;    // width of the colour in the name's cell
-constexpr int kEye = 30;       // width of the eyes' column
-constexpr int kOpacity = 108;  // width of the opacities: a slider and four decimals
-constexpr int kLeastName = 90; // width of a name with its colour, where there are values beside it
+constexpr int kSwatch = 26;       // width of the colour in the name's cell
+constexpr int kEye = 30;          // width of the eyes' column
+constexpr int kOpacity = 108;     // width of the opacities: a slider and four decimals
+constexpr int kLeastOpacity = 64; // the decimals and a stub of the slider
+constexpr int kLeastName = 90;    // width of a name with its colour, where there are values beside it
 constexpr int kCellMargins = 16;
 constexpr int kPadlock = 16; // width in the name's cell
 
@@ -438,9 +439,13 @@ void FeaturesPanel::resizeEvent(QResizeEvent* event) {
 
 /// A narrow panel leaves out the values, which the curve shows, too: names and opacities must be read.
 void FeaturesPanel::shareOutColumns() {
-    int others = kEye + kOpacity;
+    int others = kEye;
     if (!m_table->isColumnHidden(FeaturesModel::PictureShare))
         others += m_table->columnWidth(FeaturesModel::PictureShare);
+    // Names go before sliders.
+    const int opacity = std::clamp(width() - others - kLeastName, kLeastOpacity, kOpacity);
+    m_table->setColumnWidth(FeaturesModel::Opacity, opacity);
+    others += opacity;
     int values = m_table->fontMetrics().horizontalAdvance(
         m_table->horizontalHeader()->model()->headerData(FeaturesModel::Range, Qt::Horizontal).toString());
     for (int row = 0; row < m_model->rowCount(); ++row)

@@ -68,7 +68,7 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
                    tr("What is taken of a preset: everything, its colours under the present opacities,\n"
                       "or its opacities in the present colours"))),
       m_list(named(new QListWidget(this), "galleryList")),
-      m_keep(named(toolButton(tr("Keep this…"), this), "galleryKeep",
+      m_keep(named(toolButton(tr("Save as preset…"), this), "galleryKeep",
                    tr("Keeps the present transfer function, with its opacities, as a preset of your own"))),
       m_remove(named(toolButton(tr("Remove"), this), "galleryRemove",
                      tr("Removes the selected preset, if it is one of your own"))),
@@ -87,7 +87,7 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
           },
           [](const Task&, int&) {}) {
     setObjectName("galleryPanel");
-    m_take->addItems({tr("Take all"), tr("Take colours"), tr("Take opacities")});
+    m_take->addItems({tr("Apply all"), tr("Colours only"), tr("Opacities only")});
     elideInTheMiddle(*m_list);
     m_list->setViewMode(QListView::IconMode);
     m_list->setResizeMode(QListView::Adjust);

@@ -62,11 +62,13 @@ private:
 
 InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)
     : QWidget(parent), m_store(store), m_results(results) {
-    addItem(*m_what, tr("How fast attention (rows) follows each opacity (columns)"), {},
-            tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
+    addItem(*m_what, tr("Effect on attention"), {},
+            tr("How fast the attention of each feature (rows) follows the opacity of another (columns). ∂W/∂x: the "
+               "change of a feature's share per change of an opacity, both from 0 to 1,\n"
                "from this view and at the present opacities"));
-    addItem(*m_what, tr("How much of a feature (rows) another one hides (columns)"), {},
-            tr("The part of the row's visibility that comes back where the column's opacity is 0,\n"
+    addItem(*m_what, tr("What hides what"), {},
+            tr("How much of each feature (rows) another one hides (columns): the part of the row's visibility that "
+               "comes back where the column's opacity is 0,\n"
                "from this view and at the present opacities"));
     m_what->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     m_what->setMinimumContentsLength(20);

@@ -80,7 +80,7 @@ OverlayPanel::OverlayPanel(Services& services, OverlayController& overlays, QWid
     setObjectName("overlayPanel");
     m_file->setTextFormat(Qt::PlainText);
     makeFaint(*m_state);
-    addItem(*m_colorMap, tr("as the values are"), QString::fromLatin1(OverlayView::kAutomatic),
+    addItem(*m_colorMap, tr("automatic"), QString::fromLatin1(OverlayView::kAutomatic),
             tr("Blue to red of both signs, else ember"));
     addColorMaps(*m_colorMap);
     addRows(*scrolledForm(this, 6));
@@ -112,7 +112,8 @@ OverlayPanel::OverlayPanel(Services& services, OverlayController& overlays, QWid
 }
 
 void OverlayPanel::addRows(QFormLayout& form) {
-    form.addRow(rowOf({m_shown, {m_file, 1}, m_choose, m_remove}));
+    form.addRow(rowOf({m_shown, {m_file, 1}}));
+    form.addRow(rowOf({m_choose, m_remove, Cell::rest()}));
     m_rows = new SettingRows(m_services, form, settingPart<OverlayView>(&Session::overlay));
     const auto found = [this](double OverlayLook::*member) {
         return [this, member] {

@@ -5,6 +5,7 @@
 #include "controllers/controllers.h"
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
+#include "panels/plot_words.h"
 #include "render/feature_pictures.h"
 #include "session/scene_data.h"
 #include "tf/tf_range.h"
@@ -326,7 +327,7 @@ void TemporalPanel::refresh() {
     if (known == 0) all.clear();
     if (!two && !all.empty()) all.insert(all.begin() + 1, Plot());
     all.resize(m_plots.size());
-    for (std::size_t p = 0; p < m_plots.size(); ++p) m_plots[p]->setPlot(std::move(all[p]));
+    for (std::size_t p = 0; p < m_plots.size(); ++p) m_plots[p]->setPlot(inWords(std::move(all[p])));
 }
 
 void TemporalPanel::chooseFile() {

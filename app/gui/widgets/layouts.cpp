@@ -1,5 +1,6 @@
 #include "widgets/layouts.h"
 
+#include <QLabel>
 #include <QScrollArea>
 
 namespace pellucid::gui {
@@ -29,6 +30,12 @@ void fillScrolled(QWidget* panel, QLayout* content) {
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     panel->setLayout(inset(columnOf({scroll}), {}));
+}
+
+void addRow(QFormLayout& form, const QString& text, QWidget* buddy, QLayout* row) {
+    auto* label = new QLabel(text);
+    label->setBuddy(buddy);
+    form.addRow(label, row);
 }
 
 QFormLayout* narrowForm(QFormLayout* form) {

@@ -42,6 +42,9 @@ L* inset(L* layout, const QMargins& margins) {
     return layout;
 }
 
+/// A row of several controls, of which `text` names `buddy`.
+void addRow(QFormLayout& form, const QString& text, QWidget* buddy, QLayout* row);
+
 /// In a narrow panel a control of the form stands below its label where there is no room beside it. Returns the form.
 QFormLayout* narrowForm(QFormLayout* form);
 

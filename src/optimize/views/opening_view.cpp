@@ -52,7 +52,8 @@ double shownLeast(const Volume& volume, const TransferFunction& tf, const View& 
 }
 
 Camera openingView(const Volume& volume, const TransferFunction& tf, const JobControl& job) {
-    constexpr double kClearly = 1.1; // times as much
+    constexpr double kClearly = 1.1;    // times as much
+    constexpr double kFromBelow = 1.15; // times as much must be seen from below the horizon to be worth it
     const Geometry& geometry = volume.geometry();
     const Camera usual = homeCamera(geometry, Projection::Perspective);
     const DrawnPart part = drawnPart(volume, tf, {}, job);
@@ -74,7 +75,8 @@ Camera openingView(const Volume& volume, const TransferFunction& tf, const JobCo
     for (const Vec3& toEye : directionsAround()) {
         if (isBehindHolder(toEye)) continue;
         const Camera camera = fittedTo(part, lookingFrom(usual, geometry, toEye), geometry);
-        candidates.push_back({camera, shownLeast(volume, even, camera, job), -glm::dot(toEye, usual.forward())});
+        const double shown = shownLeast(volume, even, camera, job) / (toEye.z < 0 ? kFromBelow : 1);
+        candidates.push_back({camera, shown, -glm::dot(toEye, usual.forward())});
     }
     const double most = std::ranges::max_element(candidates, {}, &Candidate::shown)->shown;
     if (!isBehindHolder(-usual.forward()) && shownLeast(volume, even, fitting, job) * kClearly >= most) return fitting;
