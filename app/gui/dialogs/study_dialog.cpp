@@ -43,7 +43,8 @@ StudyDialog::StudyDialog(Study study, QWidget* parent)
     }
     m_width->setValue(m_study.width);
     m_height->setValue(m_study.height);
-    addRow(*form, tr("Si&ze"), m_width, rowOf({m_width, new QLabel(QStringLiteral("×"), this), m_height, Cell::rest()}));
+    addRow(*form, tr("Si&ze"), m_width,
+           rowOf({m_width, new QLabel(QStringLiteral("×"), this), m_height, Cell::rest()}));
     auto* labels = rowOf({});
     for (int score = kLowestScore; score <= kHighestScore; ++score) {
         auto* edit = named(new QLineEdit(this), QStringLiteral("studyScore%1").arg(score));
