@@ -47,13 +47,13 @@ std::vector<LookPoint> pointsOf(const OverlayLook& look, double step) {
     return points;
 }
 
-/// Whether more of these distances lie near 0 than near the largest: as of a map of differences, not of a CT, whose air
+/// Whether no fewer of these distances lie near 0 than near the largest: as of a map of differences, not of a CT, whose air
 /// is all on one end.
 bool fallsFromZero(std::vector<double>& distances) {
     std::ranges::sort(distances);
     const double third = quantile(distances, kTopAt) / 3;
     const auto upTo = [&](double value) { return std::ranges::upper_bound(distances, value) - distances.begin(); };
-    return upTo(third) > static_cast<std::ptrdiff_t>(distances.size()) - upTo(2 * third);
+    return upTo(third) >= static_cast<std::ptrdiff_t>(distances.size()) - upTo(2 * third);
 }
 
 } // namespace

@@ -219,7 +219,7 @@ TEST_CASE("what is selected under a clip plane comes out of what lies over it", 
     CHECK_FALSE(settingsOf(w).region);
 }
 
-TEST_CASE("a selection is moved, stretched and removed; one of nothing is refused", "[refine]") {
+TEST_CASE("a selection is moved, stretched and removed, one of nothing is refused", "[refine]") {
     OpenWindow w;
     const TransferFunction tf = w.document().tf();
     const QImage picture = w.picture();

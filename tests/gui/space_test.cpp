@@ -105,7 +105,7 @@ TEST_CASE("the parameter space of three features is computed, shown and turned",
         CHECK(s.space().vws[f][62] == Approx(s.document().measures()->features[f].vws).margin(1e-4));
 }
 
-TEST_CASE("targets change F at once; the view makes the space one of an older state", "[gui][space]") {
+TEST_CASE("targets change F at once, the view makes the space one of an older state", "[gui][space]") {
     OpenSpace s;
     s.click("spaceCompute");
     s.computed();

@@ -98,7 +98,7 @@ TEST_CASE("the bars are saved as charts, with their targets", "[targets]") {
     CHECK(button.defaultAction() == &w.child<QAction>("saveBarsAction"));
 }
 
-TEST_CASE("a target is dragged, typed and locked; each is one step", "[targets]") {
+TEST_CASE("a target is dragged, typed and locked, each is one step", "[targets]") {
     OpenWindow w;
     TargetBars& bars = barsOf(w);
     const QImage start = image(bars);
@@ -172,7 +172,7 @@ TEST_CASE("targets by keys: a digit opens the box, L locks and leaves the light 
     CHECK_FALSE(boxOf(w).isVisible());
 }
 
-TEST_CASE("presets set all targets; locked ones stay", "[targets]") {
+TEST_CASE("presets set all targets, locked ones stay", "[targets]") {
     OpenWindow w;
     TargetBars& bars = barsOf(w);
     const auto preset = [&](const char* action) { w.child<QAction>(action).trigger(); };

@@ -430,7 +430,7 @@ TEST_CASE("features are of the volatility: figures, refinement, optimization and
         if (w.document().volume()->value(i) != values[i]) FAIL("voxel " << i);
 }
 
-TEST_CASE("a second variable darkens; swapping it and back gives the same picture", "[variables]") {
+TEST_CASE("a second variable darkens, swapping it and back gives the same picture", "[variables]") {
     const Weather weather;
     OpenWindow w;
     openCloud(w, weather);

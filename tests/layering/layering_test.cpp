@@ -320,3 +320,20 @@ TEST_CASE("a folder with many files says what each is", "[layering]") {
         }
     }
 }
+
+TEST_CASE("no name of a test has a semicolon, at which ctest would cut it and run nothing", "[layering]") {
+    const std::regex cut(R"(^TEST_CASE\("[^"]*;)");
+    const auto hasOne = [&](const std::string& line) { return std::regex_search(line, cut); };
+    CHECK(hasOne("TEST_CASE(\"this" + std::string(";") + " that\", \"[x]\")"));
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(PELLUCID_SOURCE_DIR) / "tests")) {
+        if (entry.path().extension() != ".cpp") continue;
+        ++files;
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);) {
+            INFO(entry.path() << ": " << line);
+            CHECK_FALSE(hasOne(line));
+        }
+    }
+    CHECK(files > 100);
+}

@@ -143,7 +143,7 @@ TEST_CASE("where shares are proportions of depth the curve is that of depths tim
     CHECK(curve.at(0) == curve.faintest().opacity);
 }
 
-TEST_CASE("the curve ends at bounds; locks leave one picture", "[density]") {
+TEST_CASE("the curve ends at bounds, locks leave one picture", "[density]") {
     const Bench b;
     const std::vector<double> start{0.02, 0.05, 0.1};
     // The second may not pass 0.2, τ = 0.2231 of 0.0513: all may grow by 4.350; the third is then 1 − 0.9^4.350.

@@ -27,7 +27,7 @@ TEST_CASE("the box reaches half a voxel beyond the outer centres", "[camera]") {
     checkEqual(g.voxelFromWorld(g.worldFromVoxel({1, 2, 3})), {1, 2, 3});
 }
 
-TEST_CASE("view 0,0 looks along +y with z up; azimuth goes toward +x, elevation toward +z", "[camera]") {
+TEST_CASE("view 0,0 looks along +y with z up, azimuth goes toward +x, elevation toward +z", "[camera]") {
     const Geometry g = geometryOf({10, 20, 30});
     const auto at = [&](double az, double el) { return cameraFromView(g, az, el, 1, Projection::Perspective); };
     checkEqual(at(0, 0).forward(), {0, 1, 0});

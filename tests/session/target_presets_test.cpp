@@ -91,7 +91,7 @@ TEST_CASE("a feature's peak is where it is most opaque", "[session][presets]") {
     CHECK(peakIntensity(added.tf, 0) == Approx(0.4)); // its middle
 }
 
-TEST_CASE("features without a voxel have no target; it comes back with their voxels", "[session][presets]") {
+TEST_CASE("features without a voxel have no target, it comes back with their voxels", "[session][presets]") {
     // Frame 0 has the intensities 1/8 and 7/8 alone: tents 1 and 2 are empty there. Frame 1 has all four.
     SeriesListing listing;
     listing.declaredRange = ValueRange{0, 1};

@@ -166,7 +166,7 @@ TEST_CASE("a new name goes wherever the old one stood", "[variables]") {
     CHECK(addVariable(s, plain("rain")) == "rain 3");
 }
 
-TEST_CASE("what a removed variable drove is constant; what others are made of stays", "[variables]") {
+TEST_CASE("what a removed variable drove is constant, what others are made of stays", "[variables]") {
     Session s = cloudAndRain();
     addVariable(s, derived("edge", "gradient:rain"));
     CHECK(madeOf(s, "rain") == Names{"edge"});

@@ -31,7 +31,7 @@ TEST_CASE("share, depth and path of a slab", "[first-opacities]") {
     CHECK(e[0].depth == Approx((2 * 80.0 + 64 * 2 + 16 * 1) / 240));
 }
 
-TEST_CASE("what lies deeper is more inside; what is nowhere has no share", "[first-opacities]") {
+TEST_CASE("what lies deeper is more inside, what is nowhere has no share", "[first-opacities]") {
     const VoxelSurvey survey = surveyOf({21, 21, 21}, {1, 1, 1}, [](int i, int j, int k) {
         const int r = std::max({std::abs(i - 10), std::abs(j - 10), std::abs(k - 10)});
         return r <= 2 ? 3 : r <= 5 ? 2 : r <= 8 ? 1 : 0;

@@ -174,7 +174,7 @@ TEST_CASE("one voxel of a million changes nothing but the range", "[proposal]") 
     checkBorder(p.features[1].lo, 0.7, 1);
 }
 
-TEST_CASE("invalid voxels count nowhere; a filler is background", "[proposal]") {
+TEST_CASE("invalid voxels count nowhere, a filler is background", "[proposal]") {
     Ball ball;
     const Proposal holes =
         propose(cubeOf<float>(48, [&](double r, const Vec3& v) { return v.x < -0.3 ? kNaN : ball(r, v); }));
@@ -331,7 +331,7 @@ TEST_CASE("CT: tissues between half-way borders, air left out, metal beyond the 
     CHECK(opacity[2] > 5 * opacity[1]);
 }
 
-TEST_CASE("CT of a chest has lungs; foam around a head is none", "[proposal][ct]") {
+TEST_CASE("CT of a chest has lungs, foam around a head is none", "[proposal][ct]") {
     const auto chest = [](double r, const Vec3& v) {
         if (r > 0.9) return -1000;
         if (std::abs(std::abs(v.x) - 0.4) < 0.25 && r < 0.75) return -850;
@@ -417,7 +417,7 @@ TEST_CASE("knee: air, fat, muscle, spongy and compact bone", "[proposal][samples
     CHECK(p.features[2].name == "bone");
 }
 
-TEST_CASE("real volumes: enamel, dentine and background of the tooth; the skull in HU", "[proposal][real]") {
+TEST_CASE("real volumes: enamel, dentine and background of the tooth, the skull in HU", "[proposal][real]") {
     const std::string folder = std::string(PELLUCID_SHARED_DIR) + "/data/real/";
     const auto load = [&](const std::string& file) {
         VolumeSource source;

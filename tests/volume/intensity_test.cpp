@@ -48,7 +48,7 @@ TEST_CASE("codes of 16-bit data over its whole range are the values themselves",
     CHECK(std::equal(values.begin(), values.end(), grid.codes.wide()));
 }
 
-TEST_CASE("codes of floats are intensities rounded to 1/64000; invalid voxels are marked", "[intensity]") {
+TEST_CASE("codes of floats are intensities rounded to 1/64000, invalid voxels are marked", "[intensity]") {
     const Volume volume = lineOf(std::vector<float>{0, 1, 0.25f, NAN, 0.7071f});
     const IntensityGrid grid = makeIntensityGrid(volume);
     CHECK(grid.maxCode == 64000);

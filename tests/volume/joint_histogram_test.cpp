@@ -62,7 +62,7 @@ TEST_CASE("gradients are per d0, whatever the spacing of their axis", "[joint]")
     }
 }
 
-TEST_CASE("voxels beside an invalid one have no gradient; constant volumes have none above 0", "[joint]") {
+TEST_CASE("voxels beside an invalid one have no gradient, constant volumes have none above 0", "[joint]") {
     const JointHistogram h = makeJointHistogram(kinkedRamp(0, Vec3(1), true), 64, 128);
     CHECK(std::accumulate(h.counts.begin(), h.counts.end(), std::uint64_t{0}) == 825 - 7);
     const Volume flat(Geometry{Int3(4), Vec3(1), Vec3(0)}, Samples(std::vector<float>(64, 0.25F)));

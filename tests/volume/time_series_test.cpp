@@ -133,7 +133,7 @@ TEST_CASE("the range of a series is that of all frames, found once and by frames
     CHECK_THROWS_WITH(broken.range(), Contains("f0")); // the first reason
 }
 
-TEST_CASE("a frame that comes back is sound again; one of another grid is refused", "[time-series]") {
+TEST_CASE("a frame that comes back is sound again, one of another grid is refused", "[time-series]") {
     bool gone = true;
     TimeSeries series(listingOf(3), [&](int f, const JobControl&) {
         if (f == 1 && gone) throw FileError("no such file", "f1", "");
