@@ -47,8 +47,8 @@ std::vector<LookPoint> pointsOf(const OverlayLook& look, double step) {
     return points;
 }
 
-/// Whether no fewer of these distances lie near 0 than near the largest: as of a map of differences, not of a CT, whose air
-/// is all on one end.
+/// Whether no fewer of these distances lie near 0 than near the largest: as of a map of differences, not of a CT, whose
+/// air is all on one end.
 bool fallsFromZero(std::vector<double>& distances) {
     std::ranges::sort(distances);
     const double third = quantile(distances, kTopAt) / 3;
