@@ -41,6 +41,11 @@ TEST_CASE("a map of one sign is drawn from a tenth of its largest value", "[over
         volumeOf([](std::size_t i) { return i % 50 == 0 ? -1.0f : 50.0f * static_cast<float>(i % 41) / 40; }));
     CHECK(noisy == OverlayLook{false, 5, 50});
     CHECK(usualColorMap(look).name == "ember");
+    // A CT: air on one end, flesh around 40, some bone. 0 lies between two things, not in the middle of one.
+    const OverlayLook ct = usualLook(volumeOf([](std::size_t i) {
+        return i % 2 == 0 ? -1000.0f : i % 10 == 1 ? 1000.0f : static_cast<float>(i % 80);
+    }));
+    CHECK_FALSE(ct.twoSided);
     // Negative values alone: from −90, the lowest tenth left out.
     CHECK(oneSidedLook({-100, 0}) == OverlayLook{false, -90, 0});
     CHECK(twoSidedLook({-100, 20}) == OverlayLook{true, 10, 100});
