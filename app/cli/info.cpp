@@ -17,13 +17,14 @@ std::string regionText(const VoxelRegion& r) {
 }
 
 std::string textOf(const Volume& v) {
+    const std::string unit = v.geometry().worldAxes == WorldAxes::Patient ? " mm" : " world units";
     std::vector<std::pair<std::string, std::string>> lines{
         {"title", v.title},
         {"format", v.format},
         {"dims", dimsText(v.dims()) + " voxels"},
         {"type", name(v.sampleType())},
-        {"spacing", vectorText(v.geometry().spacing) + " world units"},
-        {"origin", vectorText(v.geometry().origin) + " world units"},
+        {"spacing", vectorText(v.geometry().spacing) + unit},
+        {"origin", vectorText(v.geometry().origin) + unit},
         {"frame", v.geometry().worldAxes == WorldAxes::Patient ? "patient (LPS, mm)" : "the file's own"},
         {"axes", axesText(v.geometry())},
         {"range", rangeText(v.range().lo, v.range().hi)},

@@ -56,9 +56,10 @@ std::string textOf(const RayProbe& p, const Scene& scene) {
     for (std::size_t f = 0; f < tf.features.size(); ++f)
         table.add({names[f], percent(p.shares[f]), ofAlpha(p.shares[f])});
     table.add({"(no feature)", percent(p.rest), ofAlpha(p.rest)});
+    const std::string unit = volume.geometry().worldAxes == WorldAxes::Patient ? " mm" : " world units";
     std::vector<std::pair<std::string, std::string>> lines{
         {"opacity", fixedText(p.alpha, 4) + ", colour " + hexFromRgb(p.color)},
-        {"path", plainText(glm::length(p.exit - p.entry)) + " world units inside the volume"}};
+        {"path", plainText(glm::length(p.exit - p.entry)) + unit + " inside the volume"}};
     if (p.alpha > 0) {
         const auto three = [](const Vec3& v) { return plainText(v.x) + ", " + plainText(v.y) + ", " + plainText(v.z); };
         lines.emplace_back("most", (p.feature >= 0 ? tf.features[static_cast<std::size_t>(p.feature)].name

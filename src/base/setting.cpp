@@ -100,9 +100,12 @@ json jsonOf(const Setting& setting, const void* settings) {
                       valueIn(setting, settings));
 }
 
+bool isAny(const NumberRange& range) { return range.lo <= -NumberRange::kFinite && range.hi >= NumberRange::kFinite; }
+
 } // namespace
 
 std::string NumberRange::text() const {
+    if (isAny(*this)) return "any number";
     const bool isAbove = open == Open::Low;
     const std::string from = (isAbove ? "above " : "from ") + wholeOrExactText(lo);
     if (hi >= kFinite) return isAbove ? from : from + " on";
@@ -137,7 +140,8 @@ const Setting& settingOf(std::span<const Setting> settings, std::string_view key
 
 std::string allowedText(const Setting& setting, const void* settings) {
     const auto number = [&](const char* what) {
-        return what + setting.range.text() + (setting.none ? std::string(" or ") + setting.none : "");
+        return std::string(what) + (isAny(setting.range) ? "" : ' ' + setting.range.text()) +
+               (setting.none ? std::string(" or ") + setting.none : "");
     };
     const auto name = [&](const Choice& choice) {
         std::vector<std::string> names(choice.names.begin(), choice.names.end());
@@ -147,7 +151,7 @@ std::string allowedText(const Setting& setting, const void* settings) {
     const SettingValue value = valueIn(setting, settings);
     if (const auto* choice = std::get_if<Choice>(&value)) return name(*choice);
     if (std::holds_alternative<bool*>(value)) return "true or false";
-    return number(std::holds_alternative<int*>(value) ? "a whole number " : "a number ");
+    return number(std::holds_alternative<int*>(value) ? "a whole number" : "a number");
 }
 
 std::string textOf(const Setting& setting, const void* settings) {

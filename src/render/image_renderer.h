@@ -34,6 +34,14 @@ public:
     /// whose pixels are 1/scale pixels of the picture wide, so that its right and lower edge may reach beyond that.
     virtual Image preview(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
                           double scale, const JobControl& job = {}) = 0;
+    struct PreviewSize {
+        int width = 0, height = 0;
+    };
+    static PreviewSize previewSize(const RenderSettings& settings, double scale);
+    /// The same for a window, in its bytes (screenPixel()): `pixels` has room for previewSize(), row after row. The
+    /// settings have a background.
+    virtual void previewOnScreen(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
+                                 double scale, std::uint32_t* pixels, const JobControl& job = {}) = 0;
     /// Whether preview() draws it in storage order, from slice to slice: quickly, and nearly as render() does
     /// (docs/method.md, "The quick picture"). Else it is render() with fewer rays.
     virtual bool previewsInStorageOrder(const Camera& camera, const RenderSettings& settings) const = 0;

@@ -14,21 +14,25 @@ namespace {
 constexpr int kNothing = 65535; ///< a range without codes: lowest 65535, highest 0
 
 std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
+std::ptrdiff_t asDifference(std::size_t n) { return static_cast<std::ptrdiff_t>(n); }
 int lowOf(std::int32_t range) { return range & 0xffff; }
 int highOf(std::int32_t range) { return static_cast<int>(static_cast<std::uint32_t>(range) >> 16); }
 std::int32_t rangeOf(int low, int high) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16);
 }
 
-/// The least of each element and its neighbours on both sides, `stride` apart, in each of the lines of `count`.
-void leastAlong(const std::uint8_t* from, std::uint8_t* to, std::size_t size, std::size_t stride, std::size_t count) {
-    const std::size_t line = stride * count;
-    for (std::size_t at = 0; at < size; at += line) {
-        const std::uint8_t* f = from + at;
-        std::uint8_t* t = to + at;
-        std::copy(f, f + line, t);
-        for (std::size_t i = 0; i + stride < line; ++i) t[i] = std::min(t[i], f[i + stride]);
-        for (std::size_t i = stride; i < line; ++i) t[i] = std::min(t[i], f[i - stride]);
+/// What elements that lie `steps` off know of the next opaque block, in lines of `count`: at least that far.
+void hear(const std::uint8_t* from, std::uint8_t* to, std::size_t count, std::uint8_t steps) {
+    for (std::size_t i = 0; i < count; ++i) to[i] = std::min(to[i], std::max(from[i], steps));
+}
+
+/// hear() from both sides, up to the farthest that counts; elements are neighbours `stride` apart among `count`.
+void hearAlong(const std::vector<std::uint8_t>& from, std::vector<std::uint8_t>& to, std::size_t stride) {
+    to = from;
+    for (std::size_t steps = 1; steps < kMostBlockDistance && steps * stride < from.size(); ++steps) {
+        const std::size_t off = steps * stride, count = from.size() - off;
+        hear(from.data() + off, to.data(), count, static_cast<std::uint8_t>(steps));
+        hear(from.data(), to.data() + off, count, static_cast<std::uint8_t>(steps));
     }
 }
 
@@ -108,19 +112,31 @@ std::vector<std::uint8_t> RayBlocks::distances(const std::function<bool(int, int
             distance[i] = low <= high && isOpaque(low, high) ? 0 : kMostBlockDistance;
         }
     });
-    // Each round carries distances one block further, along x, y and z. (A slab of its own per thread, with as many
-    // layers around it as there are rounds, would do more work than it spreads.)
-    std::vector<std::uint8_t> a(size), b(size);
+    // Over faces, edges and corners the distance is the longest of those along the axes. So one axis after the other:
+    // the least, over all blocks of a line, of the larger of what is known there and the way there.
     const std::size_t nx = asSize(m_dims.x), ny = asSize(m_dims.y), nz = asSize(m_dims.z);
-    for (int round = 1; round < kMostBlockDistance; ++round) {
-        leastAlong(distance.data(), a.data(), size, 1, nx);
-        leastAlong(a.data(), b.data(), size, nx, ny);
-        leastAlong(b.data(), a.data(), size, layer, nz);
-        for (std::size_t i = 0; i < size; ++i) {
-            const auto further = static_cast<std::uint8_t>(a[i] + 1);
-            distance[i] = std::min(distance[i], further);
+    std::vector<std::uint8_t> inLayers(size);
+    parallelFor(nz, [&](std::size_t z) {
+        constexpr std::size_t kGap = kMostBlockDistance - 1; // between rows, so that a layer is one line along x too
+        std::vector<std::uint8_t> rows((nx + kGap) * ny, kMostBlockDistance), alongX, alongXy;
+        for (std::size_t y = 0; y < ny; ++y)
+            std::copy_n(&distance[z * layer + y * nx], nx, rows.begin() + asDifference(y * (nx + kGap)));
+        hearAlong(rows, alongX, 1);
+        for (std::size_t y = 0; y < ny; ++y) // what a gap has heard is none of its rows' business
+            std::fill_n(alongX.begin() + asDifference(y * (nx + kGap) + nx), kGap, kMostBlockDistance);
+        hearAlong(alongX, alongXy, nx + kGap);
+        for (std::size_t y = 0; y < ny; ++y)
+            std::copy_n(alongXy.begin() + asDifference(y * (nx + kGap)), nx, &inLayers[z * layer + y * nx]);
+    });
+    parallelFor(nz, [&](std::size_t z) {
+        std::uint8_t* const to = &distance[z * layer];
+        std::copy_n(&inLayers[z * layer], layer, to);
+        for (std::size_t steps = 1; steps < kMostBlockDistance; ++steps) {
+            const auto way = static_cast<std::uint8_t>(steps);
+            if (z >= steps) hear(&inLayers[(z - steps) * layer], to, layer, way);
+            if (z + steps < nz) hear(&inLayers[(z + steps) * layer], to, layer, way);
         }
-    }
+    });
     return distance;
 }
 

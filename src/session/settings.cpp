@@ -8,7 +8,7 @@ namespace pellucid {
 namespace {
 
 using Open = NumberRange::Open;
-constexpr double kLargestOverlayValue = 1e12;
+constexpr NumberRange kAnyNumber{-NumberRange::kFinite, NumberRange::kFinite};
 
 } // namespace
 
@@ -216,7 +216,7 @@ std::span<const Setting> settingsOf<OverlayView>() {
          .help = "Value of the overlay up to which nothing of it is drawn; with both signs, its distance from 0. "
                  "Without a number it is a tenth of the largest value; with both signs, the distance that 5 % of the "
                  "values other than 0 exceed.",
-         .range = {-kLargestOverlayValue, kLargestOverlayValue},
+         .range = kAnyNumber,
          .none = "auto",
          .option = "overlay-threshold",
          .used = hasLook},
@@ -226,7 +226,7 @@ std::span<const Setting> settingsOf<OverlayView>() {
          .help =
              "Value of the overlay that its colours reach to; what is beyond it looks the same. Without a number it "
              "is the largest value; with both signs, the distance from 0 that 0.1 % of the values exceed.",
-         .range = {-kLargestOverlayValue, kLargestOverlayValue},
+         .range = kAnyNumber,
          .none = "auto",
          .option = "overlay-top",
          .used = hasLook},

@@ -416,8 +416,10 @@ void proposeClasses(Proposal& result, const Evidence& e, const JobControl& job) 
     const std::string count =
         std::to_string(parts.size()) + (parts.size() == 1 ? " class of intensity" : " classes of intensity");
     result.why.push_back(found.byPeaks
-                             ? count + ": peaks of what lies in no boundary or at the end of one (LH); " +
-                                   percent(found.fit) + " of it is near a peak, borders half-way between peaks"
+                             ? count +
+                                   ", one per peak of the values away from boundaries (LH histogram), with borders "
+                                   "half-way between peaks; " +
+                                   percent(found.fit) + " of these values lie near a peak"
                              : count + " by multi-Otsu, which explains " + percent(found.fit) + " of the variance");
     finish(result, e, std::move(parts));
 }

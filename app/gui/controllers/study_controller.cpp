@@ -132,7 +132,7 @@ void StudyController::chooseView() {
         return m_services.showError(tr("Cannot add the view to the study"),
                                     {"the transfer function has no features", "", "add one to ask about"});
     const QString offered =
-        study().isEmpty() ? QDir(keptFolder(kFolderKey, QDir::homePath())).filePath("study.study.json") : study();
+        study().isEmpty() ? QDir(keptFolder(kFolderKey, QDir::homePath())).filePath("experiment.study.json") : study();
     StudyViewDialog dialog(offered, features, std::max(0, m_services.selectedFeature()), m_services.window());
     while (dialog.exec() == QDialog::Accepted) {
         if (dialog.study().isEmpty()) continue;

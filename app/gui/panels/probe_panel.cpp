@@ -179,10 +179,9 @@ void ProbePanel::refreshText() {
                                        percent(ray.shares[static_cast<std::size_t>(f)]))
                             : tr("In no feature"));
     const Volume& volume = *scene.volume;
-    const double span = volume.range().hi - volume.range().lo;
     const auto value = m_probe.valueAtPlace();
     QString text = tr("%1 opaque").arg(percent(ray.alpha));
-    text += tr(" · value %1").arg(value ? numberText(*value, span) : tr("invalid"));
+    text += tr(" · value %1").arg(value ? ProbePlot::valueText(scene, *value) : tr("invalid"));
     text += tr(" · at %1").arg(placeText(volume.geometry(), scene.session.coordinates->axes, m_probe.place()));
     m_text->setText(text);
     const bool composite = scene.session.display->mode == RenderMode::Composite;

@@ -40,6 +40,12 @@ ProbePlot::ProbePlot(Services& services, ProbeController& probe, QWidget* parent
                    .arg(tr("world units, mm of a patient")));
 }
 
+QString ProbePlot::valueText(const Scene& scene, double value) {
+    const ValueRange range = scene.volume->range();
+    const std::string unit = scene.unit.value_or("");
+    return numberText(value, range.hi - range.lo) + (unit.empty() ? QString() : ' ' + QString::fromStdString(unit));
+}
+
 QRectF ProbePlot::plot() const {
     const int line = fontMetrics().height();
     return QRectF(rect()).adjusted(6, 4 + line, -6, -(line + kStrip + 8));
@@ -137,7 +143,7 @@ void ProbePlot::mouseMoveEvent(QMouseEvent* event) {
     std::optional<double> hovered;
     if (!std::isnan(s.intensity)) {
         const int f = featureAt(m_probe.tf().features, s.intensity);
-        value = numberText(volume.valueOfIntensity(s.intensity), volume.range().hi - volume.range().lo);
+        value = valueText(m_services.scene(), volume.valueOfIntensity(s.intensity));
         if (f >= 0) value += QStringLiteral(" (%1)").arg(nameOf(m_probe, f));
         hovered = s.intensity;
     }

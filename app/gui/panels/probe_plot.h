@@ -7,6 +7,10 @@
 
 #include "render/probe.h"
 
+namespace pellucid {
+struct Scene;
+}
+
 namespace pellucid::gui {
 
 class ProbeController;
@@ -18,6 +22,9 @@ class ProbePlot : public QWidget {
     Q_OBJECT
 public:
     ProbePlot(Services& services, ProbeController& probe, QWidget* parent);
+
+    /// A value of the scene's volume with as many digits as its range asks for, and its unit.
+    static QString valueText(const Scene& scene, double value);
 
     QRectF plot() const; ///< where the curves are
     double depthAt(double x) const;

@@ -8,6 +8,7 @@
 #include <QCursor>
 #include <QPainter>
 
+#include "base/screen_pixel.h"
 #include "base/stopwatch.h"
 #include "render/image_renderer.h"
 #include "widgets/theme.h"
@@ -22,14 +23,12 @@ constexpr int kGrowEvery = 40;            ///< milliseconds between looks at wha
 constexpr double kFullStep = 1, kCoarsestStep = 3;
 constexpr double kCoarsest = 0.5, kLastResort = 0.2; ///< rays per pixel along each axis
 
-/// Opaque pixels of a part of `from` into the same place of `to`.
-void convert(const Image& from, const ImagePart& part, QImage& to) {
-    const auto byte = [](float v) { return static_cast<unsigned>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f); };
+/// Opaque pixels of a part of `from` into the same place of an image of that size, Format_RGB32.
+void convert(const Image& from, const ImagePart& part, uchar* to) {
     for (int y = part.y0; y < part.y1; ++y) {
         const float* pixel = from.pixel(part.x0, y);
-        auto* line = reinterpret_cast<QRgb*>(to.scanLine(y));
-        for (int x = part.x0; x < part.x1; ++x, pixel += 4)
-            line[x] = 0xff000000u | byte(pixel[0]) << 16 | byte(pixel[1]) << 8 | byte(pixel[2]);
+        auto* line = reinterpret_cast<QRgb*>(to) + static_cast<std::ptrdiff_t>(y) * from.width;
+        for (int x = part.x0; x < part.x1; ++x, pixel += 4) line[x] = screenPixel(pixel);
     }
 }
 
@@ -70,31 +69,43 @@ CpuSurface::Picture CpuSurface::drawn(Shared& shared, const Task& task, const Jo
         shared.renderer = makeCpuRenderer(task.input.volume);
         shared.volume = task.input.volume;
     }
+    if (!task.growing) return quick(*shared.renderer, task, job);
+    const PictureInput& in = task.input;
+    const RenderSettings settings = task.plan.applied(in.settings, task.pixels);
+    Image image(settings.width, settings.height);
+    shared.renderer->refine(
+        in.camera, in.tf, settings, image, task.focus.x(), task.focus.y(),
+        [&](const ImagePart& part) {
+            const std::lock_guard growing(task.growing->mutex);
+            convert(image, part, task.growing->pixels.bits());
+            task.growing->ready.push_back(part);
+        },
+        job);
+    return {{}, task.plan};
+}
+
+CpuSurface::Picture CpuSurface::quick(TileRenderer& renderer, const Task& task, const JobControl& job) {
     const PictureInput& in = task.input;
     const Stopwatch watch;
     Picture picture;
-    if (task.growing) {
-        Image image(in.settings.width, in.settings.height);
-        shared.renderer->refine(
-            in.camera, in.tf, in.settings, image, task.focus.x(), task.focus.y(),
-            [&](const ImagePart& part) {
-                const std::lock_guard growing(task.growing->mutex);
-                convert(image, part, task.growing->pixels);
-                task.growing->ready.push_back(part);
-            },
-            job);
-    } else {
-        const Image image = shared.renderer->preview(in.camera, in.tf, in.settings, task.plan.resolutionScale, job);
-        picture.image = QImage(image.width, image.height, QImage::Format_RGB32);
-        convert(image, {0, 0, image.width, image.height}, picture.image);
-    }
+    picture.inSlices =
+        renderer.previewsInStorageOrder(in.camera, PicturePlan{1, kFullStep}.applied(in.settings, task.pixels));
+    picture.plan = planFor(task.affordable, picture.inSlices);
+    const double scale = picture.plan.resolutionScale;
+    const RenderSettings settings = picture.plan.applied(in.settings, task.pixels);
+    const auto size = TileRenderer::previewSize(settings, scale);
+    picture.image = QImage(size.width, size.height, QImage::Format_RGB32);
+    renderer.previewOnScreen(in.camera, in.tf, settings, scale, reinterpret_cast<std::uint32_t*>(picture.image.bits()),
+                             job);
     picture.seconds = watch.seconds();
     return picture;
 }
 
-/// Half the resolution before longer steps, and less than that where nothing else helps. `samples`: of those of a full
-/// picture.
-PicturePlan CpuSurface::planFor(double samples) {
+/// Along rays half the resolution before longer steps, and less than that where nothing else helps; in storage order
+/// there is one sample per slice, whatever the step.
+PicturePlan CpuSurface::planFor(const Affordable& affordable, bool inSlices) {
+    if (inSlices) return {std::clamp(std::sqrt(affordable.inSlices), kLastResort, 1.0), kFullStep};
+    const double samples = affordable.alongRays;
     double scale = std::clamp(std::sqrt(samples), kCoarsest, 1.0);
     const double step = std::clamp(kFullStep * scale * scale / samples, kFullStep, kCoarsestStep);
     if (step == kCoarsestStep) scale = std::clamp(std::sqrt(samples * kCoarsestStep / kFullStep), kLastResort, scale);
@@ -144,11 +155,9 @@ void CpuSurface::draw(Stage stage) {
     const QPointF mouse = mapFromGlobal(QPointF(QCursor::pos()));
     const QPointF focus = QRectF(rect()).contains(mouse) ? mouse : QRectF(rect()).center();
     const RenderSettings& wanted = m_scene.settings;
-    const PicturePlan plan = stage == Stage::Quick  ? planFor(m_samples)
-                             : stage == Stage::Full ? PicturePlan{1, kFullStep}
-                                                    : PicturePlan{1, wanted.stepInD0, wanted.finestInD0};
-    Task task{m_scene, pixels, stage, plan, (focus * devicePixelRatioF()).toPoint(), {}};
-    task.input.settings = plan.applied(wanted, pixels);
+    const PicturePlan plan =
+        stage == Stage::Finished ? PicturePlan{1, wanted.stepInD0, wanted.finestInD0} : PicturePlan{1, kFullStep};
+    Task task{m_scene, pixels, stage, plan, m_affordable, (focus * devicePixelRatioF()).toPoint(), {}};
     if (!wanted.background) task.input.settings.background = Rgb{};
     if (stage != Stage::Quick) {
         // It grows over the one before.
@@ -184,13 +193,14 @@ void CpuSurface::takeGrown() {
 }
 
 void CpuSurface::show(const Task& task, const Picture& picture) {
+    const PicturePlan& plan = picture.plan;
     m_info = {task.pixels.width(),
               task.pixels.height(),
-              task.plan.resolutionScale,
-              task.input.settings.smallestStep(),
+              plan.resolutionScale,
+              plan.applied(task.input.settings, task.pixels).smallestStep(),
               task.stage == Stage::Finished && !m_again,
               task.input.volume.get()};
-    const bool full = task.stage == Stage::Full || (task.plan.resolutionScale == 1 && task.plan.stepInD0 == kFullStep);
+    const bool full = task.stage == Stage::Full || (plan.resolutionScale == 1 && plan.stepInD0 == kFullStep);
     m_next = full ? Stage::Finished : Stage::Full;
     if (task.growing) {
         takeGrown();
@@ -199,9 +209,10 @@ void CpuSurface::show(const Task& task, const Picture& picture) {
         if (task.stage == Stage::Full) draw(Stage::Finished);
     } else {
         m_picture = picture.image;
-        m_target = QSizeF(picture.image.size()) / task.plan.resolutionScale;
-        const double drawn = task.plan.resolutionScale * task.plan.resolutionScale * kFullStep / task.plan.stepInD0;
-        m_samples = std::clamp(drawn * kPictureSeconds / std::max(1e-4, picture.seconds), 0.01, 1.0);
+        m_target = QSizeF(picture.image.size()) / plan.resolutionScale;
+        const double drawn = plan.resolutionScale * plan.resolutionScale * kFullStep / plan.stepInD0;
+        (picture.inSlices ? m_affordable.inSlices : m_affordable.alongRays) =
+            std::clamp(drawn * kPictureSeconds / std::max(1e-4, picture.seconds), 0.01, 1.0);
         if (m_again)
             draw(Stage::Quick);
         else

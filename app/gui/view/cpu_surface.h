@@ -9,6 +9,10 @@
 #include "jobs/rest_timer.h"
 #include "view/view_surface.h"
 
+namespace pellucid {
+class TileRenderer;
+}
+
 namespace pellucid::gui {
 
 /// While the scene changes, pictures are quick ones (TileRenderer::preview()), as fine as there is time for, judged by
@@ -33,20 +37,29 @@ private:
     struct Shared; // with threads that have been cancelled but have not noticed yet
     struct Growing;
     enum class Stage { Quick, Full, Finished };
+    /// Samples that a quick picture can afford, of those of a full one; follows the time that pictures take.
+    struct Affordable {
+        double inSlices = 0.5; ///< drawn in storage order
+        double alongRays = 0.25;
+    };
     struct Task {
         PictureInput input;
         QSize pixels; ///< of the widget
         Stage stage;
-        PicturePlan plan;
+        PicturePlan plan; ///< of a picture that grows
+        Affordable affordable;
         QPoint focus;                     ///< pixel from which a picture grows
         std::shared_ptr<Growing> growing; ///< where it does; null: a quick picture
     };
     struct Picture {
         QImage image; ///< null: what has grown is it
+        PicturePlan plan;
+        bool inSlices = false; ///< a quick picture, drawn in storage order
         double seconds = 0;
     };
     static Picture drawn(Shared& shared, const Task& task, const JobControl& job);
-    static PicturePlan planFor(double samples);
+    static Picture quick(TileRenderer& renderer, const Task& task, const JobControl& job);
+    static PicturePlan planFor(const Affordable& affordable, bool inSlices);
     void restart();
     void draw(Stage stage);
     void show(const Task& task, const Picture& picture);
@@ -58,9 +71,9 @@ private:
     QImage m_picture;                   ///< shown over m_target, device pixels
     QSizeF m_target;
     PictureInfo m_info;
-    double m_samples = 0.25;    ///< that a quick picture can afford, of those of a full one; follows the time it takes
-    bool m_again = false;       ///< the scene changed while a coarse picture was being drawn
-    Stage m_next = Stage::Full; ///< when the scene rests
+    Affordable m_affordable;
+    bool m_again = false;                            ///< the scene changed while a coarse picture was being drawn
+    Stage m_next = Stage::Full;                      ///< when the scene rests
     RestTimer m_idle{120, [this] { draw(m_next); }}; ///< milliseconds without a change before the full picture is begun
     QTimer m_grow;
     Job<Task, Picture> m_job; // last: its threads end before the rest goes

@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kReach = 8;    // pixels from a handle at which it is taken
 constexpr double kRadius = 4.5; // of a handle
-constexpr int kHintTop = 14;    // of the hint, from the upper edge
+constexpr int kHintTop = 14;    // of the hint, below the letter at the upper edge
 
 /// What to do next, in the middle above.
-void paintHint(QPainter& painter, const QString& text, double width) {
+void paintHint(QPainter& painter, const QString& text, double width, double top) {
     const QFontMetricsF metrics(painter.font());
     const QSizeF size(metrics.horizontalAdvance(text) + 20, metrics.height() + 10);
-    const QRectF box(QPointF((width - size.width()) / 2, kHintTop), size);
+    const QRectF box(QPointF((width - size.width()) / 2, top), size);
     painter.setPen(Qt::NoPen);
     painter.setBrush(QColor(0, 0, 0, 190));
     painter.drawRoundedRect(box, 5, 5);
@@ -110,7 +110,7 @@ void RulerLayer::paint(QPainter& painter, const LayerView& view) {
     const PictureView picture = view.picture();
     const double cap = MarkMaker(picture.width, picture.height, 1, {}).capHeight;
     m_hand.paint(painter, rulerMarks(m_rulers.shown(), picture, {1, cap}), handles(view));
-    if (m_rulers.placing()) paintHint(painter, m_rulers.hint(), view.size.width());
+    if (m_rulers.placing()) paintHint(painter, m_rulers.hint(), view.size.width(), kHintTop + 2 * cap);
 }
 
 Qt::CursorShape RulerLayer::cursorAt(const QPointF& point, const LayerView& view) {

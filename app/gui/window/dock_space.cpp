@@ -4,6 +4,7 @@
 
 #include <QDockWidget>
 #include <QEvent>
+#include <QTabBar>
 #include <QTimer>
 
 namespace pellucid::gui {
@@ -45,6 +46,10 @@ DockSpace::Docks DockSpace::open() const {
 void DockSpace::settle() {
     m_waiting = false;
     if (!m_window.isVisible()) return;
+    for (QTabBar* bar : m_window.findChildren<QTabBar*>(QString(), Qt::FindDirectChildrenOnly)) {
+        bar->setElideMode(Qt::ElideNone); // whole names and arrows, where Qt would leave two letters of each
+        bar->setUsesScrollButtons(true);
+    }
     Docks now = open();
     const bool closed =
         now.size() < m_open.size() && std::includes(m_open.begin(), m_open.end(), now.begin(), now.end());

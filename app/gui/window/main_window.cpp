@@ -172,7 +172,7 @@ void MainWindow::addPanelActions(const std::vector<PanelInfo>& panels) {
             QDockWidget* const dock = m_services->panels().dock(panel.id);
             menu.addCheck(
                 QString(panel.id) + "Action", panel.title, panel.keys.toString(), panel.tip,
-                [dock] { return isInFront(*dock); },
+                [dock] { return !dock->isHidden(); },
                 [this, dock] { togglePanel(*dock, *static_cast<DockScroll*>(dock->widget())); });
         }
     }

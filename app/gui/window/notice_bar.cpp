@@ -11,9 +11,10 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kMargin = 8, kMostWidth = 720; // logical pixels
+constexpr int kMargin = 8, kMostWidth = 720;    // logical pixels
+constexpr int kCorner = 100, kLeastWidth = 480; // of the picture, which the cube and the colour bar stand in
 
-}
+} // namespace
 
 NoticeBar::NoticeBar(Notices& notices, QWidget* parent)
     : QFrame(parent), m_notices(notices), m_label(wrappedLabel("noticeText", this)), m_rows(new QVBoxLayout) {
@@ -44,7 +45,8 @@ bool NoticeBar::eventFilter(QObject* watched, QEvent* event) {
 }
 
 void NoticeBar::place() {
-    const int room = parentWidget()->width() - 2 * kMargin;
+    const int whole = parentWidget()->width() - 2 * kMargin;
+    const int room = std::max(std::min(whole, kLeastWidth), whole - 2 * kCorner);
     // As wide as the longest line, as far as there is room.
     const int around = sizeHint().width() - m_label->sizeHint().width();
     int longest = 0;

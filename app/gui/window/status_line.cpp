@@ -27,10 +27,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
       m_camera(named(new QLabel(&bar), "cameraLabel",
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
-      m_renderer(named(new QLabel(&bar), "rendererLabel")),
-      m_engine(
-          named(new QLabel(&bar), "engineLabel",
-                tr("What computes how much of each feature is seen (visibility) and how much catches the eye (VWS)"))),
+      m_renderer(named(new QLabel(&bar), "rendererLabel")), m_engine(named(new QLabel(&bar), "engineLabel")),
       m_background(named(new QLabel(&bar), "backgroundLabel")), m_progress(progressBar("backgroundProgress", &bar)),
       m_cancel(named(toolButton(tr("Cancel"), &bar), "backgroundCancel")) {
     m_progress->setMaximumSize(160, 14);
@@ -103,11 +100,11 @@ void StatusLine::followScene() {
 }
 
 void StatusLine::followView() {
-    m_renderer->setToolTip(tr("What draws the picture, and how well: pixels, smallest distance of the samples along "
-                              "a ray.\n%1")
-                               .arg(m_view.rendererReason()));
     const PictureInfo& picture = m_view.picture();
-    const QString quality = picture.complete              ? tr("step %1 d0").arg(stepText(picture.stepInD0))
+    m_renderer->setToolTip(tr("What draws the picture, its size in pixels, and whether it gets any better.\n"
+                              "Samples along a ray are %1 d0 apart or more (d0: the smallest distance of voxels).\n%2")
+                               .arg(stepText(picture.stepInD0), m_view.rendererReason()));
+    const QString quality = picture.complete              ? tr("complete")
                             : picture.resolutionScale < 1 ? tr("coarse")
                                                           : tr("being refined");
     m_renderer->setText(
@@ -117,9 +114,13 @@ void StatusLine::followView() {
 void StatusLine::followFigures() {
     const Results& results = m_services.results();
     const Results::State state = results.state();
+    m_engine->setToolTip(
+        tr("Whether the figures are those of the picture: how much of each feature is seen\n"
+           "(visibility) and how much attention it gets (VWS).") +
+        (results.engineName().isEmpty() ? QString() : tr("\nComputed by: %1").arg(results.engineName())));
     m_engine->setText(m_services.isReadOnly()              ? tr("optimizing")
                       : state == Results::State::Measuring ? tr("measuring")
-                      : state == Results::State::Current   ? tr("measured: %1").arg(results.engineName())
+                      : state == Results::State::Current   ? tr("measured")
                       : state == Results::State::Failed    ? tr("not measured")
                                                            : QString());
 }

@@ -11,6 +11,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "base/parallel.h"
+#include "base/screen_pixel.h"
 #include "render/cpu/ray_packets.h"
 #include "render/cpu/ray_volume.h"
 #include "render/cpu/sheared_picture.h"
@@ -34,6 +35,12 @@ static_assert(int(PacketMode::Composite) == int(RenderMode::Composite) &&
               int(PacketMode::Surface) == int(RenderMode::Surface));
 PacketMode packetMode(RenderMode mode) { return static_cast<PacketMode>(mode); }
 
+/// Where pixels go, as floats: null where they go elsewhere.
+struct PacketTarget {
+    int width = 0, height = 0;
+    float* rgba = nullptr;
+};
+
 class CpuRenderer final : public TileRenderer {
 public:
     CpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options)
@@ -52,13 +59,29 @@ public:
 
     Image preview(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
                   const JobControl& job) override {
-        PELLUCID_CHECK(scale > 0 && scale <= 1);
-        settings.validate();
-        const auto scaled = [scale](int pixels) { return static_cast<int>(std::ceil(pixels * scale - 1e-9)); };
-        Image image(scaled(settings.width), scaled(settings.height));
-        if (!drawSheared(camera, tf, settings, scale, image, job))
+        const PreviewSize size = checkedSize(settings, scale);
+        Image image(size.width, size.height);
+        const PacketTarget target{size.width, size.height, image.rgba.data()};
+        if (!drawSheared(camera, tf, settings, scale, target, nullptr, job))
             draw(camera, tf, settings, scale, image, tilesOf(image), {}, job);
         return image;
+    }
+
+    void previewOnScreen(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
+                         std::uint32_t* pixels, const JobControl& job) override {
+        PELLUCID_CHECK(settings.background);
+        const PreviewSize size = checkedSize(settings, scale);
+        if (drawSheared(camera, tf, settings, scale, {size.width, size.height, nullptr}, pixels, job)) return;
+        Image image(size.width, size.height);
+        draw(
+            camera, tf, settings, scale, image, tilesOf(image),
+            [&](const ImagePart& part) {
+                for (int y = part.y0; y < part.y1; ++y) {
+                    std::uint32_t* line = pixels + static_cast<std::ptrdiff_t>(y) * size.width;
+                    for (int x = part.x0; x < part.x1; ++x) line[x] = screenPixel(image.pixel(x, y));
+                }
+            },
+            job);
     }
 
     bool previewsInStorageOrder(const Camera& camera, const RenderSettings& settings) const override {
@@ -91,7 +114,7 @@ private:
               Image& image, const std::vector<ImagePart>& tiles, const std::function<void(const ImagePart&)>& done,
               const JobControl& job) {
         Seen seen;
-        fillScenes(camera, tf, settings, scale, image, seen);
+        fillScenes(camera, tf, settings, scale, {image.width, image.height, image.rgba.data()}, seen);
         const GroundPicture ground = groundUnder(camera, settings, scale, image, job);
         if (!ground.depth.empty())
             for (PacketScene* scene : {&seen.first, &seen.second}) {
@@ -113,22 +136,30 @@ private:
         });
     }
 
-    /// False where the picture cannot be drawn in storage order.
+    static PreviewSize checkedSize(const RenderSettings& settings, double scale) {
+        PELLUCID_CHECK(scale > 0 && scale <= 1);
+        settings.validate();
+        return previewSize(settings, scale);
+    }
+
+    /// Into `pixels` or, where that is null, into the target. False where the picture cannot be drawn in storage order.
     bool drawSheared(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
-                     Image& image, const JobControl& job) {
+                     const PacketTarget& target, std::uint32_t* pixels, const JobControl& job) {
         const auto view = shearOf(camera, settings, scale);
         if (!view) return false;
         Seen seen;
-        fillScenes(camera, tf, settings, scale, image, seen);
-        m_sheared.draw(seen.first, camera, *view, job);
+        fillScenes(camera, tf, settings, scale, target, seen);
+        m_sheared.draw(seen.first, camera, *view, pixels, job);
         return true;
     }
 
     std::optional<ShearView> shearOf(const Camera& camera, const RenderSettings& settings, double scale) const {
         if (!m_options.sheared || !ShearedPicture::canDraw(settings)) return {};
         camera.validate(m_volume->geometry(), "camera");
+        ShearDensity density = m_options.density;
+        density.closest /= scale; // else fewer pixels would take as many rays where voxels are larger than they
         return pellucid::shearOf(camera, m_volume->geometry(), settings.clipping, settings.width * scale,
-                                 settings.height * scale, m_options.density);
+                                 settings.height * scale, density);
     }
 
     /// All but the ground.
@@ -136,17 +167,17 @@ private:
         PacketScene first, second; ///< of the volume, and of the overlay where there is one
     };
     void fillScenes(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
-                    Image& image, Seen& seen) {
+                    const PacketTarget& target, Seen& seen) {
         camera.validate(m_volume->geometry(), "camera");
         settings.featureAlone(tf); // tells where there is none
         m_rays.prepare(tf, settings.onlyFeature, settings.mode == RenderMode::Surface);
-        fillPicture(settings, image, seen.first);
+        fillPicture(settings, target, seen.first);
         seen.first.mode = packetMode(settings.mode);
         fillColors(settings, seen.first);
         m_rays.fillFeatures(seen.first);
         prepareOverlay(settings.overlay);
         if (settings.overlay) {
-            fillPicture(settings, image, seen.second);
+            fillPicture(settings, target, seen.second);
             seen.first.overlay = &seen.second;
         }
         const PictureRays picture = raysOf(camera, settings, scale);
@@ -205,10 +236,10 @@ private:
     }
 
     /// What does not depend on the volume, but for the mode.
-    void fillPicture(const RenderSettings& settings, Image& image, PacketScene& s) const {
-        s.width = image.width;
-        s.height = image.height;
-        s.rgba = image.rgba.data();
+    void fillPicture(const RenderSettings& settings, const PacketTarget& target, PacketScene& s) const {
+        s.width = target.width;
+        s.height = target.height;
+        s.rgba = target.rgba;
         s.leap = m_options.leap;
         s.halvings = settings.halvings();
         s.jitter = settings.jitter;
@@ -251,6 +282,11 @@ private:
 };
 
 } // namespace
+
+TileRenderer::PreviewSize TileRenderer::previewSize(const RenderSettings& settings, double scale) {
+    const auto scaled = [scale](int pixels) { return static_cast<int>(std::ceil(pixels * scale - 1e-9)); };
+    return {scaled(settings.width), scaled(settings.height)};
+}
 
 std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options) {
     return std::make_unique<CpuRenderer>(std::move(volume), options);

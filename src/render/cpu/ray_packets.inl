@@ -274,7 +274,7 @@ private:
         m_lighting.gradientsAt(position, bits, gradient);
         m_lighting.toCamera(gradient, inCamera);
         const Shade shade =
-            m_lighting.shadeOf(m_rays, inCamera, position, m_rays.depth + place * m_rays.depthPerStep, bits);
+            m_lighting.shadeOf(m_rays.view, inCamera, position, m_rays.depth + place * m_rays.depthPerStep, bits);
         for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
             const int n = __builtin_ctz(lanes);
             m_color.rgb[n] += m_lighting.lit(m_unlit[n], m_pending[n], shade, n);

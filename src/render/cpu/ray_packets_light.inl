@@ -43,17 +43,15 @@ public:
     /// What is left of optical depth where the gradient has the length g.
     Vec8 depthShare(Vec8 g) const { return 1.0f - m_s.light.gradientOpacity * (1.0f - least(all(1), g * (1 / 0.05f))); }
 
-    /// `gradient` in camera coordinates, `position` in voxels, `depth` along the view.
-    Shade shadeOf(const Rays& r, const Vec8 (&gradient)[3], const Vec8 (&position)[3], Vec8 depth,
+    /// `view` and `gradient` in camera coordinates, the first a unit vector toward the viewer; `position` in voxels,
+    /// `depth` along the view.
+    Shade shadeOf(const Vec8 (&view)[3], const Vec8 (&gradient)[3], const Vec8 (&position)[3], Vec8 depth,
                   unsigned bits) const {
         const PacketLight& l = m_s.light;
         Shade shade{all(1), Vec8{}, all(1), Vec8{}};
         const Vec8 g = lengthOf(gradient);
         const Int8 surface = g >= 1e-6f; // inside a homogeneous region there is none to light
         const Vec8 perG = 1.0f / most(g, all(1e-6f));
-        const Vec8 perLength = 1.0f / r.length;
-        // Toward the viewer: against the ray, which goes (slope right, slope down, 1 ahead).
-        const Vec8 view[3] = {-r.slope[0] * perLength, r.slope[1] * perLength, perLength};
         Vec8 normal[3], facing = Vec8{};
         for (int a = 0; a < 3; ++a) {
             normal[a] = gradient[a] * perG;

@@ -212,7 +212,7 @@ private:
                 alpha = 1 - __builtin_powf(1 - alpha, share);
             }
             const Shade shade =
-                m_lighting.shadeOf(m_rays, inCamera, position, m_rays.depth + place * m_rays.depthPerStep, bit);
+                m_lighting.shadeOf(m_rays.view, inCamera, position, m_rays.depth + place * m_rays.depthPerStep, bit);
             rgb = m_lighting.lit(rgb, 1, shade, n);
         }
         m_color.rgb[n] += m_clear[n] * alpha * rgb;

@@ -191,7 +191,7 @@ private:
         Vec8 position[3], inCamera[3];
         gradientAt(place, bits, position, inCamera);
         const Rays& r = m_course.rays;
-        const Shade shade = m_lighting.shadeOf(r, inCamera, position, r.depth + place * r.depthPerStep, bits);
+        const Shade shade = m_lighting.shadeOf(r.view, inCamera, position, r.depth + place * r.depthPerStep, bits);
         for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
             const int n = __builtin_ctz(lanes);
             sum.rgb[n] += m_lighting.lit(m_unlit[n], m_pending[n], shade, n);

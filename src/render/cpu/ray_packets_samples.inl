@@ -83,8 +83,7 @@ struct Rays {
     Vec8 point[3], step[3], perStep[3]; ///< voxels; perStep = 1/step, finite
     Vec8 count;                         ///< 0: meets nothing
     Vec8 shift;                         ///< sample n lies at u = n + shift, held in [0, count]
-    Vec8 length;                        ///< world units per unit of depth
-    Vec8 slope[2];                      ///< world, to the right and downward per unit of depth
+    Vec8 view[3];                       ///< unit vector toward the viewer: right, up, backward
     Vec8 depth, depthPerStep;           ///< of `point`, and what a step adds
 };
 
@@ -102,9 +101,11 @@ inline Rays raysOf(const PacketScene& s, Int8 x, Int8 y) {
     const PacketCamera& c = s.camera;
     const Vec8 px = toFloat(x) + (0.5f - c.middle[0]), py = toFloat(y) + (0.5f - c.middle[1]);
     Rays r;
-    r.slope[0] = px * c.slope[0];
-    r.slope[1] = py * c.slope[1];
-    r.length = squareRoot(1.0f + r.slope[0] * r.slope[0] + r.slope[1] * r.slope[1]);
+    const Vec8 right = px * c.slope[0], down = py * c.slope[1]; // world units per unit of depth
+    const Vec8 length = squareRoot(1.0f + right * right + down * down), perLength = 1.0f / length;
+    r.view[0] = -right * perLength;
+    r.view[1] = down * perLength;
+    r.view[2] = perLength;
     Vec8 point[3], direction[3];
     for (int a = 0; a < 3; ++a) {
         point[a] = c.point[a] + px * c.pointBy[0][a] + py * c.pointBy[1][a];
@@ -131,7 +132,7 @@ inline Rays raysOf(const PacketScene& s, Int8 x, Int8 y) {
             exit[n] = exit[n] < ground ? exit[n] : ground;
         }
     }
-    r.depthPerStep = s.step / r.length;
+    r.depthPerStep = s.step / length;
     r.count = (enter < exit) & inPicture ? (exit - enter) / r.depthPerStep : Vec8{};
     enter = r.count > 0 ? enter : Vec8{};
     r.depth = enter;

@@ -58,14 +58,14 @@ struct ShearView {
 /// Rays per pixel of a picture that a ShearView has, about, along each axis; and how close they get at most.
 struct ShearDensity {
     double raysPerPixel = 0.75;
-    double closest = 1;     ///< voxels
+    double closest = 1.15;  ///< voxels
     double farthest = 1.85; ///< voxels, along u in every slice: that many neighbours are read together
 };
 
 /// The view in storage order; empty where it has none: in perspective, where the eye is beside or within the stack of
 /// slices or so near to it that some lie more than kMostScale times as far off as others, or rays are inclined by more
 /// than kMostShear voxels per slice; and where the volume is flat. `camera` has been validated.
-inline constexpr double kMostScale = 4, kMostShear = 2;
+inline constexpr double kMostScale = 4, kMostShear = 3;
 std::optional<ShearView> shearOf(const Camera& camera, const Geometry& geometry, const Clipping& clipping, double width,
                                  double height, const ShearDensity& density = {});
 

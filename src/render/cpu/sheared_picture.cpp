@@ -146,10 +146,11 @@ void ShearedPicture::turn() {
     turnInto(m_turnedValid, m_grid.valid.data(), n);
 }
 
-void ShearedPicture::draw(const PacketScene& scene, const Camera& camera, const ShearView& view,
+void ShearedPicture::draw(const PacketScene& scene, const Camera& camera, const ShearView& view, std::uint32_t* pixels,
                           const JobControl& job) {
     ShearedScene s;
     s.scene = &scene;
+    s.pixels = pixels;
     fillView(view, s);
     fillPlanes(scene, s);
     fillWorld(view, camera, m_geometry, s);
@@ -184,8 +185,8 @@ void ShearedPicture::draw(const PacketScene& scene, const Camera& camera, const 
     });
     const std::vector<int> extents = extentsOf(m_touched, view.height);
     s.extents = extents.data();
-    const std::vector<PacketTile> pixels = tilesOf(scene.width, scene.height, kWarpTile, kWarpTile);
-    parallelFor(pixels.size(), [&](std::size_t i) { kernel.warp(s, pixels[i]); });
+    const std::vector<PacketTile> parts = tilesOf(scene.width, scene.height, kWarpTile, kWarpTile);
+    parallelFor(parts.size(), [&](std::size_t i) { kernel.warp(s, parts[i]); });
 }
 
 } // namespace pellucid

@@ -18,7 +18,7 @@ constexpr int kShearedRun = 4;
 constexpr int kEnded = 1 << 30; ///< in the place of a slice
 constexpr int kMostPackets = kShearedTileWidth / kWide;
 /// Slices before memory is needed that it is asked for.
-constexpr int kAskedAhead = 6;
+constexpr int kAskedAhead = 9;
 /// What a ray has gathered up to this opacity is lit as one.
 constexpr float kShearedLitAtOnce = 1.0f / 256;
 
@@ -45,6 +45,8 @@ public:
             if (leap > 0) {
                 m_known = false;
                 goOn(n + leap);
+                for (int ahead = 0; ahead < kAskedAhead && m_next + ahead < m_lastSlice; ++ahead)
+                    m_slices.prefetch(m_x, m_x + kWide, m_y, m_next + ahead);
                 return;
             }
             m_left = kShearedRun;
@@ -87,13 +89,13 @@ private:
         m_v0 = m_s.first[1] + static_cast<float>(m_y) * m_s.pitch[1];
         m_way[0] = m_u0 * m_s.scale[1] + m_s.shift[0][1];
         m_way[1] = all(m_v0 * m_s.scale[1] + m_s.shift[1][1]);
-        Vec8 square = Vec8{};
         const auto component = [&](const float(&by)[3]) { return m_way[0] * by[0] + m_way[1] * by[1] + by[2]; };
-        m_right = component(m_s.right);
-        m_down = component(m_s.down);
-        m_ahead = component(m_s.ahead);
-        square = m_right * m_right + m_down * m_down + m_ahead * m_ahead;
-        m_length = squareRoot(square) * (1 / m_s.d0);
+        const Vec8 right = component(m_s.right), down = component(m_s.down), ahead = component(m_s.ahead),
+                   length = squareRoot(right * right + down * down + ahead * ahead), perLength = 1.0f / length;
+        m_view[0] = -right * perLength;
+        m_view[1] = down * perLength;
+        m_view[2] = ahead * perLength;
+        m_length = length * (1 / m_s.d0);
 
         m_enter = all(-1);
         m_exit = all(static_cast<float>(m_s.dims[2]));
@@ -271,12 +273,8 @@ private:
         const Vec8 uvw[3] = {uAt(w), all(vAt(w)), all(w)};
         for (int a = 0; a < 3; ++a)
             position[m_s.axis[a]] = a == 2 && m_s.reversed ? all(static_cast<float>(m_s.dims[2] - 1)) - w : uvw[a];
-        Rays rays{};
-        rays.slope[0] = m_right / m_ahead;
-        rays.slope[1] = m_down / m_ahead;
-        rays.length = squareRoot(1.0f + rays.slope[0] * rays.slope[0] + rays.slope[1] * rays.slope[1]);
         const Vec8 depth = m_s.depthAtZero + uvw[0] * m_s.ahead[0] + uvw[1] * m_s.ahead[1] + uvw[2] * m_s.ahead[2];
-        const Shade shade = m_lighting.shadeOf(rays, inCamera, position, depth, bits);
+        const Shade shade = m_lighting.shadeOf(m_view, inCamera, position, depth, bits);
         for (int c = 0; c < 3; ++c) {
             Vec8 lit = least(m_unlit[c] * shade.scale + shade.add * m_pending, m_pending) * shade.dim;
             lit += shade.cue * (m_scene.light.cueColor[c] * m_pending - lit);
@@ -308,8 +306,9 @@ private:
     Met m_met[2];
     Vec8 m_u0, m_way[3]; ///< per slice
     float m_v0 = 0;
-    Vec8 m_right, m_down, m_ahead, m_length; ///< per slice, world; the last in d0
-    Vec8 m_enter, m_exit;                    ///< in w
+    Vec8 m_length;        ///< of the way from slice to slice, in d0
+    Vec8 m_view[3];       ///< unit vector toward the viewer: right, up, backward
+    Vec8 m_enter, m_exit; ///< in w
     int m_firstSlice = 0, m_lastSlice = 0;
     float m_allIn = 0, m_allOut = 0; ///< between these no ray enters or leaves
     Vec8 m_clear = all(1), m_rgb[3]{}, m_unlit[3]{}, m_pending = Vec8{};

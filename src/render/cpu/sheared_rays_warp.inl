@@ -7,64 +7,116 @@
 namespace pellucid {
 namespace {
 
-/// Weights of four neighbours for a place `f` of the way from the second to the third; their sum is 1.
-inline Vec4 cubicWeights(float f) {
-    const float g = 1 - f;
-    const Vec4 outer{-f * g * g, 0, 0, -g * f * f};
-    const float third = f * (f * (2 - 1.5f * f) + 0.5f), second = g * (g * (2 - 1.5f * g) + 0.5f);
-    return 0.5f * outer + Vec4{0, second, third, 0};
+/// Weights of four neighbours for places `f` of the way from the second to the third; their sum is 1.
+inline void cubicWeights(Vec8 f, Vec8 (&weights)[4]) {
+    const Vec8 g = 1 - f;
+    weights[0] = -0.5f * f * g * g;
+    weights[1] = g * (g * (2 - 1.5f * g) + 0.5f);
+    weights[2] = f * (f * (2 - 1.5f * f) + 0.5f);
+    weights[3] = -0.5f * g * f * f;
 }
 
-/// Straight colour and alpha of a pixel over what lies behind it.
-inline Vec4 overBackground(const PacketScene& s, int y, Vec4 color) {
-    const float clear = 1 - color[3];
-    if (s.hasBackground) {
-        const float up = 1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(s.height);
-        for (int c = 0; c < 3; ++c) color[c] += clear * (s.background[c] + up * (s.backgroundTop[c] - s.background[c]));
-        color[3] = 1;
-    } else if (color[3] > 0) {
-        const float alpha = color[3];
+/// What lies behind the pixels of a row: straight colour and alpha.
+inline Vec4 behindRow(const PacketScene& s, int y) {
+    if (!s.hasBackground) return Vec4{};
+    const float up = 1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(s.height);
+    Vec4 color{0, 0, 0, 1};
+    for (int c = 0; c < 3; ++c) color[c] = s.background[c] + up * (s.backgroundTop[c] - s.background[c]);
+    return color;
+}
+
+/// Straight colour and alpha of a pixel, of colour times alpha and alpha over what lies behind.
+inline Vec4 over(Vec4 color, Vec4 behind, bool hasBackground) {
+    const float alpha = color[3];
+    if (hasBackground) return color + (1 - alpha) * behind;
+    if (alpha > 0) {
         color /= alpha;
         color[3] = alpha;
     }
     return color;
 }
 
-inline Vec4 rayAt(const float* p) {
-    Vec4 v;
-    __builtin_memcpy(&v, p, sizeof v);
-    return v;
+/// 0xffRRGGBB of a colour within [0, 1].
+inline std::uint32_t screenPixel(Vec4 color) {
+    const Int4 v = __builtin_convertvector(color * 255 + 0.5f, Int4);
+#ifdef __AVX2__
+    const __m128i bytes = _mm_shuffle_epi8(reinterpret_cast<__m128i>(v),
+                                           _mm_setr_epi8(8, 4, 0, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1));
+    return 0xff000000u | static_cast<std::uint32_t>(_mm_cvtsi128_si32(bytes));
+#else
+    return 0xff000000u | static_cast<std::uint32_t>(v[0] << 16 | v[1] << 8 | v[2]);
+#endif
+}
+
+inline Vec4 lowHalf(Vec8 v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+inline Vec4 highHalf(Vec8 v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+/// Four times a, four times b.
+inline Vec8 twice4(float a, float b) { return Vec8{a, a, a, a, b, b, b, b}; }
+
+/// Eight pixels of a row: where their rays pass the grid.
+struct WarpedRow {
+    Int8 inside, column, row;
+    Vec8 across[4], downward[4];
+
+    WarpedRow(const ShearedScene& s, int x, int y) {
+        const Vec8 px = all(static_cast<float>(x) + 0.5f) + kIota;
+        const float py = static_cast<float>(y) + 0.5f;
+        const auto ofPixel = [&](int n) { return s.ofPixel[n][1] * px + (s.ofPixel[n][0] + s.ofPixel[n][2] * py); };
+        const Vec8 below = ofPixel(2), i = ofPixel(0) / below, j = ofPixel(1) / below;
+        inside = (below > 0) & (i >= 1) & (j >= 1) & (i < static_cast<float>(s.width - 2)) &
+                 (j < static_cast<float>(s.height - 2));
+        column = toInt(inside ? i : Vec8{});
+        row = toInt(inside ? j : Vec8{});
+        if (none(inside)) return;
+        cubicWeights(i - toFloat(column), across);
+        cubicWeights(j - toFloat(row), downward);
+    }
+
+    /// Colour times alpha, and alpha, of pixel n.
+    Vec4 at(const ShearedScene& s, int n) const {
+        const Vec8 first = twice4(across[0][n], across[1][n]), second = twice4(across[2][n], across[3][n]);
+        const float* from = s.rgba + (row[n] - 1) * s.stride + 4 * (column[n] - 1);
+        Vec8 sum{};
+        for (int r = 0; r < 4; ++r, from += s.stride)
+            sum += downward[r][n] * (first * load(from) + second * load(from + kWide));
+        Vec4 color = lowHalf(sum) + highHalf(sum);
+        // A cubic may overshoot.
+        color = color > 0 ? color : Vec4{};
+        const float alpha = color[3] < 1 ? color[3] : 1;
+        const Vec4 limit = Vec4{} + alpha;
+        return color < limit ? color : limit;
+    }
+};
+
+/// `store(pixel, color)` for all pixels of a tile; the colour is straight.
+template <class Store>
+void warpTileTo(const ShearedScene& s, const PacketTile& tile, const Store& store) {
+    const PacketScene& scene = *s.scene;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        const Vec4 behind = behindRow(scene, y);
+        std::int64_t to = static_cast<std::int64_t>(y) * scene.width + tile.x0;
+        for (int x = tile.x0; x < tile.x1; x += kWide) {
+            const WarpedRow pixels(s, x, y);
+            const unsigned bits = bitsOf(pixels.inside);
+            const int count = smaller(kWide, tile.x1 - x);
+            for (int n = 0; n < count; ++n, ++to) {
+                Vec4 color = behind;
+                const int row = pixels.row[n], column = pixels.column[n];
+                if ((bits >> n & 1u) && column + 2 >= s.extents[2 * row] && column - 1 <= s.extents[2 * row + 1])
+                    color = over(pixels.at(s, n), behind, scene.hasBackground);
+                store(to, color);
+            }
+        }
+    }
 }
 
 void warpTile(const ShearedScene& s, const PacketTile& tile) {
-    const PacketScene& scene = *s.scene;
-    const auto ofPixel = [&](int n, float x, float y) {
-        return s.ofPixel[n][0] + s.ofPixel[n][1] * x + s.ofPixel[n][2] * y;
-    };
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) {
-            const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
-            const float below = ofPixel(2, px, py), i = ofPixel(0, px, py) / below, j = ofPixel(1, px, py) / below;
-            Vec4 color{};
-            const bool inside = below > 0 && i >= 1 && j >= 1 && i < static_cast<float>(s.width - 2) &&
-                                j < static_cast<float>(s.height - 2);
-            const int column = inside ? static_cast<int>(i) : 0, row = inside ? static_cast<int>(j) : 0;
-            if (inside && column + 2 >= s.extents[2 * row] && column - 1 <= s.extents[2 * row + 1]) {
-                const Vec4 across = cubicWeights(i - static_cast<float>(column)),
-                           downward = cubicWeights(j - static_cast<float>(row));
-                const float* from = s.rgba + (row - 1) * s.stride + 4 * (column - 1);
-                for (int r = 0; r < 4; ++r, from += s.stride)
-                    color += downward[r] * (across[0] * rayAt(from) + across[1] * rayAt(from + 4) +
-                                            across[2] * rayAt(from + 8) + across[3] * rayAt(from + 12));
-                // A cubic may overshoot.
-                color = color > 0 ? color : Vec4{};
-                const float alpha = color[3] < 1 ? color[3] : 1;
-                const Vec4 limit = Vec4{} + alpha;
-                color = color < limit ? color : limit;
-            }
-            color = overBackground(scene, y, color);
-            __builtin_memcpy(scene.rgba + 4 * (static_cast<std::int64_t>(y) * scene.width + x), &color, sizeof color);
-        }
+    if (s.pixels)
+        warpTileTo(s, tile, [&](std::int64_t pixel, Vec4 color) { s.pixels[pixel] = screenPixel(color); });
+    else
+        warpTileTo(s, tile, [&](std::int64_t pixel, Vec4 color) {
+            __builtin_memcpy(s.scene->rgba + 4 * pixel, &color, sizeof color);
+        });
 }
 
 } // namespace
