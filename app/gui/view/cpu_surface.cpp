@@ -52,6 +52,7 @@ CpuSurface::CpuSurface(QWidget* parent)
       m_job([shared = m_renderer](const Task& task, const JobControl& job) { return drawn(*shared, task, job); },
             [this](const Task& task, Picture& picture) { show(task, picture); }) {
     setObjectName("cpuSurface");
+    setAttribute(Qt::WA_OpaquePaintEvent);
     m_grow.setInterval(kGrowEvery);
     connect(&m_grow, &QTimer::timeout, this, &CpuSurface::takeGrown);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
@@ -224,12 +225,12 @@ void CpuSurface::show(const Task& task, const Picture& picture) {
 
 void CpuSurface::paintEvent(QPaintEvent*) {
     QPainter painter(this);
-    if (m_picture.isNull()) {
+    const QRectF shown(QPointF(), m_target / devicePixelRatioF());
+    if (m_picture.isNull() || shown.width() < width() || shown.height() < height())
         painter.fillRect(rect(), colorFromRgb(m_scene.settings.background.value_or(Rgb{})));
-        return;
-    }
+    if (m_picture.isNull()) return;
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
-    painter.drawImage(QRectF(QPointF(), m_target / devicePixelRatioF()), m_picture);
+    painter.drawImage(shown, m_picture);
 }
 
 } // namespace pellucid::gui

@@ -14,7 +14,6 @@ ViewOverlay::ViewOverlay(SessionStore& store, QWidget* view) : QWidget(view), m_
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.series != after.series) cancel(); // what was taken hold of is gone
         if (m_glimpse) lookFrom(m_glimpse->camera);
-        update();
     });
 }
 

@@ -74,6 +74,8 @@ VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* pare
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) lookFrom({});
         updateScene();
+        // What turns with the volume waits for its picture: else all would be painted twice, the first time in vain.
+        if (drawsByGl() || before.camera == after.camera) m_overlay->update();
     });
     if (fields != nullptr)
         connect(fields, &FieldController::changed, this, [this] {
@@ -143,6 +145,7 @@ void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
     layout()->addWidget(m_surface->widget());
     m_overlay->raise();
     m_surface->onPicture = [this] {
+        if (!drawsByGl()) m_overlay->update();
         Q_EMIT pictureShown();
         if (m_probeWaits && isComplete()) startProbe();
     };

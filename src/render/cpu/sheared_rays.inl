@@ -20,7 +20,7 @@ constexpr int kMostPackets = kShearedTileWidth / kWide;
 /// Slices before memory is needed that it is asked for.
 constexpr int kAskedAhead = 9;
 /// What a ray has gathered up to this opacity is lit as one.
-constexpr float kShearedLitAtOnce = 1.0f / 256;
+constexpr float kShearedLitAtOnce = 1.0f / 128;
 
 /// Emission and absorption along eight neighbours, from slice to slice. Between two the intensity goes linearly, and
 /// what it meets there comes from running integrals over the transfer function.
