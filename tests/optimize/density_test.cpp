@@ -321,7 +321,10 @@ TEST_CASE("shares and parts of alpha in words", "[density]") {
           "Asked for 25 %, 25 % and 50 %; kept 30 %, 25 % and 45 %, so that all of it can be seen: with the "
           "shares asked for the picture is 6.5 % opaque, and 'f1' and 'f2' add at most 1.5 % to the "
           "pixels that they cover.");
-    r.seen = Seen{{0.065, {0.1, 0.1, 0.001}}, true, {2}, {}, {}};
+    r.seen.emplace();
+    r.seen->coverage = {0.065, {0.1, 0.1, 0.001}};
+    r.seen->faint = true;
+    r.seen->unseen = {2};
     CHECK(faintText(r) == "The picture is 6.5 % opaque, and 'f3' adds 0.1 % to the pixels that it covers.");
 }
 

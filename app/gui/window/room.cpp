@@ -32,6 +32,7 @@ constexpr int kLeastBeside = 284, kMostBeside = 360;
 constexpr double kBeside = 0.22; // of the width
 constexpr int kLeastBelow = 203, kMostBelow = 300;
 constexpr double kBelow = 0.25; // of the height
+constexpr int kPlayerFrame = 8; // around what it holds
 constexpr int kTabs = 26;       // what a row of tabs needs
 
 struct TaskText {
@@ -139,9 +140,11 @@ void Room::shareOut() {
     const bool hasTabs = std::ranges::any_of(others, [](const QDockWidget* dock) { return !dock->isHidden(); });
     m_window.resizeDocks({&curve}, {share(kBelow, m_window.height(), kLeastBelow, kMostBelow) + (hasTabs ? kTabs : 0)},
                          Qt::Vertical);
-    if (!player.isHidden()) // no wider than it must be: the curve has the rest
-        m_window.resizeDocks({&player}, {static_cast<DockScroll*>(player.widget())->leastOfContent().width() + 8},
-                             Qt::Horizontal);
+    if (player.isHidden()) return;
+    // The player is no wider than it must be: the curve has the rest.
+    const int least = static_cast<DockScroll*>(player.widget())->leastOfContent().width() + kPlayerFrame;
+    const int both = curve.width() + player.width();
+    m_window.resizeDocks({&curve, &player}, {both - least, least}, Qt::Horizontal);
 }
 
 void Room::choose(Task task) {
