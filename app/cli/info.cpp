@@ -17,7 +17,7 @@ std::string regionText(const VoxelRegion& r) {
 }
 
 std::string textOf(const Volume& v) {
-    const std::string unit = v.geometry().worldAxes == WorldAxes::Patient ? " mm" : " world units";
+    const std::string unit = std::string(" ") + lengthUnit(v.geometry());
     std::vector<std::pair<std::string, std::string>> lines{
         {"title", v.title},
         {"format", v.format},

@@ -10,6 +10,7 @@
 #include "parse.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
+#include "volume/orientation.h"
 
 namespace pellucid::cli {
 
@@ -56,7 +57,7 @@ std::string textOf(const RayProbe& p, const Scene& scene) {
     for (std::size_t f = 0; f < tf.features.size(); ++f)
         table.add({names[f], percent(p.shares[f]), ofAlpha(p.shares[f])});
     table.add({"(no feature)", percent(p.rest), ofAlpha(p.rest)});
-    const std::string unit = volume.geometry().worldAxes == WorldAxes::Patient ? " mm" : " world units";
+    const std::string unit = std::string(" ") + lengthUnit(volume.geometry());
     std::vector<std::pair<std::string, std::string>> lines{
         {"opacity", fixedText(p.alpha, 4) + ", colour " + hexFromRgb(p.color)},
         {"path", plainText(glm::length(p.exit - p.entry)) + unit + " inside the volume"}};

@@ -100,7 +100,8 @@ json jsonOf(const Setting& setting, const void* settings) {
                       valueIn(setting, settings));
 }
 
-bool isAny(const NumberRange& range) { return range.lo <= -NumberRange::kFinite && range.hi >= NumberRange::kFinite; }
+constexpr double kBeyondAll = 1e100; ///< no data are as far from 0: a bound there need not be told
+bool isAny(const NumberRange& range) { return range.lo <= -kBeyondAll && range.hi >= kBeyondAll; }
 
 } // namespace
 
@@ -140,7 +141,7 @@ const Setting& settingOf(std::span<const Setting> settings, std::string_view key
 
 std::string allowedText(const Setting& setting, const void* settings) {
     const auto number = [&](const char* what) {
-        return std::string(what) + (isAny(setting.range) ? "" : ' ' + setting.range.text()) +
+        return (isAny(setting.range) ? "" : std::string(what) + ' ') + setting.range.text() +
                (setting.none ? std::string(" or ") + setting.none : "");
     };
     const auto name = [&](const Choice& choice) {

@@ -41,8 +41,10 @@ std::vector<std::string> goodValues(const Setting& setting, const SettingValue& 
 
 /// Numbers that it may not have.
 std::vector<double> badNumbers(const Setting& setting) {
-    std::vector<double> numbers{setting.range.lo - 1};
-    if (setting.range.hi < 1e300) numbers.push_back(setting.range.hi + 1);
+    constexpr double kExact = 1e15; // beyond, adding 1 changes nothing
+    const NumberRange& r = setting.range;
+    std::vector<double> numbers{r.lo > -kExact ? r.lo - 1 : 10 * r.lo};
+    if (r.hi < NumberRange::kFinite) numbers.push_back(r.hi < kExact ? r.hi + 1 : 10 * r.hi);
     if (setting.range.open == NumberRange::Open::Low) numbers.push_back(setting.range.lo);
     if (setting.range.open == NumberRange::Open::High) numbers.push_back(setting.range.hi);
     return numbers;

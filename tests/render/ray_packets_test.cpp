@@ -132,8 +132,8 @@ TEST_CASE("any number of threads, tiles in any order: the same bits", "[image]")
 }
 
 TEST_CASE("a preview is the picture seen through coarser pixels", "[image]") {
-    // Half as many rays: pixel (i, j) of the preview lies between four of the picture, whose field is smooth, so that rays
-    // 2.3 voxels apart will do.
+    // Half as many rays: pixel (i, j) of the preview lies between four of the picture, whose field is smooth, so that
+    // rays 2.3 voxels apart will do.
     const auto volume = volumeFrom(geometryOf({64, 64, 64}), [](int i, int j, int k) {
         const Vec3 way = (Vec3(i, j, k) - 31.5) / 14.0;
         return 0.5 * std::exp(-0.5 * glm::dot(way, way)); // the tent's rising half

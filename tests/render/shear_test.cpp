@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/screen_pixel.h"
 #include "render/cpu/cpu_renderer.h"
 #include "render/cpu/ray_packets.h"
 #include "render/projected.h"
@@ -236,6 +237,30 @@ TEST_CASE("leaping and the choice of instructions change nothing of the quick pi
             for (const auto& other : others)
                 CHECK(ssim(expected, other->preview(camera, tents(2, 0.3), settings, 1)) > 0.9999);
         }
+}
+
+TEST_CASE("pixels for a window are the quick picture in bytes, whichever way it is drawn", "[sheared]") {
+    const auto volume = lumps({34, 30, 32});
+    const Camera camera = cameraFromView(volume->geometry(), 30, 25, 1.2, Projection::Perspective);
+    CpuRenderOptions other;
+    other.kernel = static_cast<int>(packetKernels().size()) - 1;
+    for (const auto& renderer : {makeCpuRenderer(volume), makeCpuRenderer(volume, other)})
+        for (const RenderMode mode : {RenderMode::Composite, RenderMode::Mip}) // in storage order, and by rays
+            for (const double scale : {1.0, 0.6}) {
+                RenderSettings settings = pictureOf(53, 41);
+                settings.mode = mode;
+                settings.backgroundTop = Rgb{0.2, 0.7, 1};
+                const Image image = renderer->preview(camera, tents(3, 0.3), settings, scale);
+                const TileRenderer::PreviewSize size = TileRenderer::previewSize(settings, scale);
+                REQUIRE(size.width == image.width);
+                REQUIRE(size.height == image.height);
+                std::vector<std::uint32_t> pixels(image.rgba.size() / 4);
+                renderer->previewOnScreen(camera, tents(3, 0.3), settings, scale, pixels.data());
+                std::size_t different = 0;
+                for (std::size_t p = 0; p < pixels.size(); ++p)
+                    different += pixels[p] != screenPixel(&image.rgba[4 * p]);
+                CHECK(different == 0);
+            }
 }
 
 TEST_CASE("what cannot be drawn in storage order is drawn by rays", "[sheared]") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <new>
 #include <vector>
 
 #include <QCursor>
@@ -58,6 +59,7 @@ CpuSurface::CpuSurface(QWidget* parent)
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_grow.stop();
         if (onFailure) onFailure(error);
+        if (m_again) draw(Stage::Quick); // the scene has changed since
     });
 }
 
@@ -89,13 +91,13 @@ CpuSurface::Picture CpuSurface::quick(TileRenderer& renderer, const Task& task, 
     const PictureInput& in = task.input;
     const Stopwatch watch;
     Picture picture;
-    picture.inSlices =
-        renderer.previewsInStorageOrder(in.camera, PicturePlan{1, kFullStep}.applied(in.settings, task.pixels));
+    picture.inSlices = renderer.previewsInStorageOrder(in.camera, task.plan.applied(in.settings, task.pixels));
     picture.plan = planFor(task.affordable, picture.inSlices);
     const double scale = picture.plan.resolutionScale;
     const RenderSettings settings = picture.plan.applied(in.settings, task.pixels);
     const auto size = TileRenderer::previewSize(settings, scale);
     picture.image = QImage(size.width, size.height, QImage::Format_RGB32);
+    if (picture.image.isNull()) throw std::bad_alloc();
     renderer.previewOnScreen(in.camera, in.tf, settings, scale, reinterpret_cast<std::uint32_t*>(picture.image.bits()),
                              job);
     picture.seconds = watch.seconds();

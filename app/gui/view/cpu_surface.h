@@ -46,7 +46,7 @@ private:
         PictureInput input;
         QSize pixels; ///< of the widget
         Stage stage;
-        PicturePlan plan; ///< of a picture that grows
+        PicturePlan plan; ///< a quick picture makes its own, by what is affordable
         Affordable affordable;
         QPoint focus;                     ///< pixel from which a picture grows
         std::shared_ptr<Growing> growing; ///< where it does; null: a quick picture

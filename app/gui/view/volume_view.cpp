@@ -74,7 +74,7 @@ VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* pare
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) lookFrom({});
         updateScene();
-        // What turns with the volume waits for its picture: else all would be painted twice, the first time in vain.
+        // What turns with the volume is painted when the next picture comes: twice for each would be half in vain.
         if (drawsByGl() || before.camera == after.camera) m_overlay->update();
     });
     if (fields != nullptr)
@@ -154,6 +154,7 @@ void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
 }
 
 void VolumeView::surfaceFailed(const Error& error) {
+    m_overlay->update(); // no picture will do it
     if (!drawsByGl()) return Q_EMIT rendererFailed(error);
     Q_EMIT rendererFailed({error.problem(), error.where(), tr("the CPU draws the picture from now on").toStdString()});
     later(this, [this] { // the one that failed is still on the stack

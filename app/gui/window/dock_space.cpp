@@ -8,6 +8,17 @@
 #include <QTimer>
 
 namespace pellucid::gui {
+namespace {
+
+/// On tabs, with arrows where there is no room for all: Qt would leave two letters of each.
+void showWholeNames(QMainWindow& window) {
+    for (QTabBar* bar : window.findChildren<QTabBar*>(QString(), Qt::FindDirectChildrenOnly)) {
+        bar->setElideMode(Qt::ElideNone);
+        bar->setUsesScrollButtons(true);
+    }
+}
+
+} // namespace
 
 bool isInFront(const QDockWidget& dock) {
     if (dock.isHidden()) return false;
@@ -46,10 +57,7 @@ DockSpace::Docks DockSpace::open() const {
 void DockSpace::settle() {
     m_waiting = false;
     if (!m_window.isVisible()) return;
-    for (QTabBar* bar : m_window.findChildren<QTabBar*>(QString(), Qt::FindDirectChildrenOnly)) {
-        bar->setElideMode(Qt::ElideNone); // whole names and arrows, where Qt would leave two letters of each
-        bar->setUsesScrollButtons(true);
-    }
+    showWholeNames(m_window);
     Docks now = open();
     const bool closed =
         now.size() < m_open.size() && std::includes(m_open.begin(), m_open.end(), now.begin(), now.end());

@@ -11,8 +11,9 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kMargin = 8, kMostWidth = 720;    // logical pixels
-constexpr int kCorner = 100, kLeastWidth = 480; // of the picture, which the cube and the colour bar stand in
+// Logical pixels.
+constexpr int kMargin = 8, kLeastWidth = 480, kMostWidth = 720;
+constexpr int kCorner = 100; // of the picture, where the cube and the scale stand
 
 } // namespace
 

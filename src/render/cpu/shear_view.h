@@ -59,7 +59,7 @@ struct ShearView {
 struct ShearDensity {
     double raysPerPixel = 0.75;
     double closest = 1.15;  ///< voxels
-    double farthest = 1.85; ///< voxels, along u in every slice: that many neighbours are read together
+    double farthest = 1.85; ///< voxels, along u in every slice: that many neighbours are read together; `closest` wins
 };
 
 /// The view in storage order; empty where it has none: in perspective, where the eye is beside or within the stack of

@@ -23,8 +23,8 @@ public:
     /// Whether it draws all that the settings ask for: emission and absorption in the colours of the transfer function,
     /// above no ground.
     static bool canDraw(const RenderSettings& settings);
-    /// Into `pixels` (as screenPixel() makes them; the scene has a background) or, where that is null, into the picture of `scene`,
-    /// which says all but the rays. Throws Cancelled.
+    /// Into `pixels` (as screenPixel() makes them; the scene has a background) or, where that is null, into the picture
+    /// of `scene`, which says all but the rays. Throws Cancelled.
     void draw(const PacketScene& scene, const Camera& camera, const ShearView& view, std::uint32_t* pixels,
               const JobControl& job);
 

@@ -44,9 +44,9 @@ struct ShearedScene {
     float depthAtZero = 0; ///< along the view, of (0, 0, 0)
     float d0 = 1;
 
-    std::uint32_t* pixels = nullptr; ///< where the picture goes as 0xffRRGGBB; null: into scene->rgba
     // The warp: where the ray of a pixel passes the plane `base`, see ShearView::ofPixel; in rays of the grid.
     float ofPixel[3][3]{};
+    std::uint32_t* pixels = nullptr; ///< where the picture goes as screenPixel() has it; null: into scene->rgba
 };
 
 /// Rays that go on together, at most: tiles are no wider.

@@ -12,7 +12,7 @@ inline void entriesAt(const std::int32_t* from, Int8 x, Int8 (&numbers)[4]) {
 #ifdef __AVX2__
     alignas(32) int entry[kWide]; // by way of memory: eight moves out of a vector cost more than eight loads
     *reinterpret_cast<__m256i*>(entry) = reinterpret_cast<__m256i>(x);
-    __asm__("" : "+m"(entry)); // or the compiler makes moves of it again
+    __asm__("" : "+m"(entry));     // or the compiler makes moves of it again
     const auto pair = [&](int n) { // of the entries n and n + 4
         const auto at = [&](int i) {
             return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from + 4 * static_cast<std::int64_t>(entry[i])));

@@ -36,8 +36,8 @@ inline Vec4 over(Vec4 color, Vec4 behind, bool hasBackground) {
     return color;
 }
 
-/// 0xffRRGGBB of a colour within [0, 1].
-inline std::uint32_t screenPixel(Vec4 color) {
+/// screenPixel() of a colour that lies within [0, 1].
+inline std::uint32_t pixelOf(Vec4 color) {
     const Int4 v = __builtin_convertvector(color * 255 + 0.5f, Int4);
 #ifdef __AVX2__
     const __m128i bytes = _mm_shuffle_epi8(reinterpret_cast<__m128i>(v),
@@ -112,7 +112,7 @@ void warpTileTo(const ShearedScene& s, const PacketTile& tile, const Store& stor
 
 void warpTile(const ShearedScene& s, const PacketTile& tile) {
     if (s.pixels)
-        warpTileTo(s, tile, [&](std::int64_t pixel, Vec4 color) { s.pixels[pixel] = screenPixel(color); });
+        warpTileTo(s, tile, [&](std::int64_t pixel, Vec4 color) { s.pixels[pixel] = pixelOf(color); });
     else
         warpTileTo(s, tile, [&](std::int64_t pixel, Vec4 color) {
             __builtin_memcpy(s.scene->rgba + 4 * pixel, &color, sizeof color);
