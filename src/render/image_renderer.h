@@ -2,6 +2,7 @@
 // integral (docs/method.md, "The picture").
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
