@@ -28,6 +28,9 @@ struct ImagePart {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
+/// A part of a picture into the same place of a window's pixels (screenPixel()), which are as many.
+void toScreen(const Image& from, const ImagePart& part, std::uint32_t* pixels);
+
 /// A renderer whose pictures come in pieces: for windows that cannot wait for the whole.
 class TileRenderer : public ImageRenderer {
 public:

@@ -9,7 +9,6 @@
 #include <QCursor>
 #include <QPainter>
 
-#include "base/screen_pixel.h"
 #include "base/stopwatch.h"
 #include "render/image_renderer.h"
 #include "widgets/theme.h"
@@ -24,14 +23,8 @@ constexpr int kGrowEvery = 40;            ///< milliseconds between looks at wha
 constexpr double kFullStep = 1, kCoarsestStep = 3;
 constexpr double kCoarsest = 0.5, kLastResort = 0.2; ///< rays per pixel along each axis
 
-/// Opaque pixels of a part of `from` into the same place of an image of that size, Format_RGB32.
-void convert(const Image& from, const ImagePart& part, uchar* to) {
-    for (int y = part.y0; y < part.y1; ++y) {
-        const float* pixel = from.pixel(part.x0, y);
-        auto* line = reinterpret_cast<QRgb*>(to) + static_cast<std::ptrdiff_t>(y) * from.width;
-        for (int x = part.x0; x < part.x1; ++x, pixel += 4) line[x] = screenPixel(pixel);
-    }
-}
+/// Of a Format_RGB32.
+std::uint32_t* pixelsOf(QImage& image) { return reinterpret_cast<std::uint32_t*>(image.bits()); }
 
 } // namespace
 
@@ -80,7 +73,7 @@ CpuSurface::Picture CpuSurface::drawn(Shared& shared, const Task& task, const Jo
         in.camera, in.tf, settings, image, task.focus.x(), task.focus.y(),
         [&](const ImagePart& part) {
             const std::lock_guard growing(task.growing->mutex);
-            convert(image, part, task.growing->pixels.bits());
+            toScreen(image, part, pixelsOf(task.growing->pixels));
             task.growing->ready.push_back(part);
         },
         job);
@@ -98,8 +91,7 @@ CpuSurface::Picture CpuSurface::quick(TileRenderer& renderer, const Task& task, 
     const auto size = TileRenderer::previewSize(settings, scale);
     picture.image = QImage(size.width, size.height, QImage::Format_RGB32);
     if (picture.image.isNull()) throw std::bad_alloc();
-    renderer.previewOnScreen(in.camera, in.tf, settings, scale, reinterpret_cast<std::uint32_t*>(picture.image.bits()),
-                             job);
+    renderer.previewOnScreen(in.camera, in.tf, settings, scale, pixelsOf(picture.image), job);
     picture.seconds = watch.seconds();
     return picture;
 }

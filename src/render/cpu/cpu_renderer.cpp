@@ -75,13 +75,7 @@ public:
         Image image(size.width, size.height);
         draw(
             camera, tf, settings, scale, image, tilesOf(image),
-            [&](const ImagePart& part) {
-                for (int y = part.y0; y < part.y1; ++y) {
-                    std::uint32_t* line = pixels + static_cast<std::ptrdiff_t>(y) * size.width;
-                    for (int x = part.x0; x < part.x1; ++x) line[x] = screenPixel(image.pixel(x, y));
-                }
-            },
-            job);
+            [&](const ImagePart& part) { toScreen(image, part, pixels); }, job);
     }
 
     bool previewsInStorageOrder(const Camera& camera, const RenderSettings& settings) const override {
@@ -282,6 +276,14 @@ private:
 };
 
 } // namespace
+
+void toScreen(const Image& from, const ImagePart& part, std::uint32_t* pixels) {
+    for (int y = part.y0; y < part.y1; ++y) {
+        const float* pixel = from.pixel(part.x0, y);
+        std::uint32_t* line = pixels + static_cast<std::ptrdiff_t>(y) * from.width;
+        for (int x = part.x0; x < part.x1; ++x, pixel += 4) line[x] = screenPixel(pixel);
+    }
+}
 
 TileRenderer::PreviewSize TileRenderer::previewSize(const RenderSettings& settings, double scale) {
     const auto scaled = [scale](int pixels) { return static_cast<int>(std::ceil(pixels * scale - 1e-9)); };
