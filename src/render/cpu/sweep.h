@@ -23,6 +23,8 @@ inline constexpr std::uint16_t kInvalidCode = 65535;
 inline constexpr int kCodePadding = 16;     ///< codes that may be read behind the last voxel
 inline constexpr int kMostSweepPlanes = 12; ///< sides of a part of the box, and oblique ones
 inline constexpr int kBlockSize = 8;        ///< voxels along each edge of a block of the opaque map
+/// Voxels: the rays around a voxel lie at most so far off along u and v on the slice in front of it.
+inline constexpr double kRayMargin = 3;
 
 enum class SweepMode {
     Single,  ///< one lane, one transfer function; writes the field if asked to
@@ -43,18 +45,52 @@ struct SweepSpan {
     int first = 0, last = -1;
 };
 
+/// Voxels lo … hi − 1 along u, v and w; none where any hi ≤ lo.
+struct SweepBox {
+    int lo[3], hi[3];
+};
+
+/// Where stretches of rays count, u, v, w: those that end in [lo, hi), and that begin there too where `fromInside`.
+struct SweepReach {
+    double lo[3], hi[3];
+    bool fromInside = false;
+};
+
+/// Rays (a, b), firstCol ≤ a < endCol, firstRow ≤ b < endRow, and numbers of each, [row][col][lanes].
+struct SweepRect {
+    int firstRow = 0, endRow = 0, firstCol = 0, endCol = 0;
+    bool holds(int a, int b) const { return a >= firstCol && a < endCol && b >= firstRow && b < endRow; }
+    std::size_t at(int a, int b, int lanes) const {
+        return (static_cast<std::size_t>(b - firstRow) * static_cast<std::size_t>(endCol - firstCol) +
+                static_cast<std::size_t>(a - firstCol)) *
+               static_cast<std::size_t>(lanes);
+    }
+    std::size_t rays() const {
+        return endRow > firstRow && endCol > firstCol ? at(0, endRow, 1) - at(0, firstRow, 1) : 0;
+    }
+};
+
+/// Rays are handed over where they enter the reach of another block: what they have met so far.
+struct SweepHandover {
+    SweepReach reach;
+    SweepRect rect;          ///< the rays that the other wants
+    float* depths = nullptr; ///< of rect; set for those that enter here
+};
+
 /// A half-space that is kept: u·U + v·V + w·W ≤ offset, the difference in d0.
 struct SweepPlane {
     double u = 0, v = 0, w = 0, offset = 0;
     double beyond(double U, double V, double W) const { return u * U + v * V + w * W - offset; }
 };
 
-/// Pointers are to the voxel u = v = 0 of the nearest slice.
+/// Pointers are to the voxel u = v = 0 of the nearest slice, also where that is not stored: of a block of a volume are
+/// stored the voxels from firstU to lastU, along v and w those that its window and its reach touch.
 struct SweepInput {
     SweepMode mode = SweepMode::Batch; ///< sets the innermost dimension of the tables, `lanes` below
 
     // The volume.
-    int nu = 0, nv = 0, nw = 0;
+    int nu = 0, nv = 0, nw = 0;                ///< of the whole volume
+    int firstU = 0, lastU = 0;                 ///< that are stored
     const std::uint16_t* codes = nullptr;      ///< codeStrides.u is 1; kInvalidCode where invalid
     const std::uint8_t* narrowCodes = nullptr; ///< in place of them, none invalid; codeStrides.u may be any
     SweepStrides codeStrides;
@@ -68,7 +104,9 @@ struct SweepInput {
     const std::uint8_t* opaque = nullptr;
     SweepStrides opaqueStrides;
     const SweepSpan* opaqueSpans =
-        nullptr;          ///< per row of blocks, of the blocks that are opaque; opaqueSpans[row + rows·slice]
+        nullptr; ///< per row of blocks, of the blocks that are opaque; opaqueSpans[row + spanStride·slice]
+    std::ptrdiff_t spanStride = 0;
+    int firstBlockU = 0, lastBlockU = 0; ///< of the opaque map that are there
     bool flipped = false; ///< w runs against the blocks: `opaque` points to the block of voxel 0 of the last slice
 
     // The transfer functions.
@@ -85,6 +123,19 @@ struct SweepInput {
     SweepPlane planes[kMostSweepPlanes];
     int planeCount = 0;
     double clipTie = 0; ///< voxels no farther than this beyond a plane are kept
+
+    SweepBox window{}; ///< the voxels that are measured
+
+    // Of a block of a volume alone (docs/method.md, "Blocks of a volume").
+    bool bounded = false; ///< `reach` says where rays go on, and these are given:
+    SweepReach reach{};
+    const float* startDepths = nullptr; ///< of startRect: what rays have met before; 0 of others. Null: of all
+    SweepRect startRect;
+    /// What rays have met at their end, of endRect, where they are carried and nothing is measured; null: measure.
+    float* endDepths = nullptr;
+    SweepRect endRect;
+    const SweepHandover* handovers = nullptr; ///< of rays that are carried
+    int handoverCount = 0;
 
     // The rays.
     bool perspective = false;
@@ -107,13 +158,14 @@ struct SweepPiece {
     int begin = 0, end = 0;
     double slopeStep = 1; ///< perspective: slope between neighbouring rays
     int firstRow = 0, lastRow = 0;
+    int firstRay = 0, lastRay = 0; ///< of a row, that voxels lie between
     bool outermostLow = false, outermostHigh = false;
 };
 
 /// Memory that a piece is worked on in, kept between pieces; aligned to 64 bytes.
 class SweepScratch {
 public:
-    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Alive, Met, Near, Far, kSlots };
+    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Alive, Met, Near, Far, Handing, kSlots };
     /// So many at least; contents are kept only while it need not grow.
     void* bytes(Slot slot, std::size_t count);
 
@@ -125,8 +177,22 @@ private:
 /// [..][0] Σv, [1] and [2] Σ v times the 16-bit weights. Jacobian: lane 0 Σv…, lane 1 + j their derivatives.
 using SweepKernel = void (*)(const SweepInput& input, const SweepPiece& piece, SweepScratch& scratch, double* sums);
 
-/// The pieces of a sweep: depends on the input alone, never on threads. Rays that diverge from a near eye start anew
-/// from the front of the box as soon as they lie too far apart.
+/// Slices that share a grid of rays. Rays that diverge from a near eye start anew from the front of the box as soon as
+/// they lie too far apart.
+struct SweepLayer {
+    int begin = 0, end = 0; ///< slices, all of the volume's that are visited once among the layers
+    double slopeStep = 0;   ///< as SweepPiece
+};
+std::vector<SweepLayer> sweepLayers(const SweepInput& input);
+
+/// The rays around the voxels of SweepInput::window in a layer; none where it has none there.
+SweepRect raysAround(const SweepInput& input, const SweepLayer& layer);
+/// The rays among raysAround() the whole volume that pass through `reach` within a layer.
+SweepRect raysThrough(const SweepInput& input, const SweepLayer& layer, const SweepReach& reach);
+
+/// The pieces of a layer, or of all of a sweep: of the voxels of the window, or where rays are carried of endRect.
+/// Depends on the input alone, never on threads.
+std::vector<SweepPiece> sweepPieces(const SweepInput& input, const SweepLayer& layer);
 std::vector<SweepPiece> sweepPieces(const SweepInput& input);
 
 /// All that this processor can run, the best first.

@@ -24,44 +24,115 @@ constexpr int kFewestRows = 6, kMostRows = 12, kPiecesWanted = 32;
 /// Slices nearer to the eye than this share their rays: there are few.
 constexpr double kNearest = 8;
 
-void addPieces(const SweepInput& in, int begin, int end, double slopeStep, std::vector<SweepPiece>& pieces) {
-    double lo = 1e30, hi = -1e30;
-    for (const int k : {begin, end - 1}) {
-        const double away = k - in.eyeW, scale = in.perspective ? slopeStep * away : in.raySpacing;
-        double first = 0, last = in.nv - 1;
-        if (in.pyramid) {
-            first = std::max(first, in.eyeV - away);
-            last = std::min(last, in.eyeV + away);
-            if (first > last) { // none on this slice: any may come in between
-                first = in.eyeV - away;
-                last = in.eyeV + away;
-            }
-        }
-        const double base = in.perspective ? in.eyeV : in.slopeV * k;
-        lo = std::min(lo, (first - base) / scale);
-        hi = std::max(hi, (last - base) / scale);
-    }
-    const int firstRow = static_cast<int>(std::floor(lo)), lastRow = static_cast<int>(std::floor(hi)) + 1;
-    const int rows = std::clamp((lastRow - firstRow) / kPiecesWanted, kFewestRows, kMostRows);
-    for (int b = firstRow; b < lastRow; b += rows)
-        pieces.push_back({begin, end, slopeStep, b, std::min(lastRow, b + rows), b == firstRow, b + rows >= lastRow});
+/// Where rays of a layer meet the plane w: ray i at base + i·scale.
+struct RayAxis {
+    double base, scale;
+    double indexAt(double x) const { return (x - base) / scale; }
+};
+RayAxis rowsAt(const SweepInput& in, const SweepLayer& layer, double w) {
+    if (in.perspective) return {in.eyeV, layer.slopeStep * (w - in.eyeW)};
+    return {in.slopeV * w, in.raySpacing};
+}
+RayAxis colsAt(const SweepInput& in, const SweepLayer& layer, double w) {
+    if (in.perspective) return {in.eyeU, layer.slopeStep * (w - in.eyeW)};
+    return {in.slopeU * w, in.raySpacing};
+}
+
+/// The first and last voxel along an axis of those of [first, last] that a pyramid leaves of a slice.
+void leavePyramid(const SweepInput& in, double eye, double away, double& first, double& last) {
+    if (!in.pyramid) return;
+    first = std::max(first, eye - away);
+    last = std::min(last, eye + away);
+    if (first <= last) return;
+    first = eye - away; // none on this slice: any may come in between
+    last = eye + away;
 }
 
 } // namespace
 
-std::vector<SweepPiece> sweepPieces(const SweepInput& in) {
-    std::vector<SweepPiece> pieces;
-    if (!in.perspective) {
-        addPieces(in, 0, in.nw, 0, pieces);
-        return pieces;
-    }
+std::vector<SweepLayer> sweepLayers(const SweepInput& in) {
+    if (!in.perspective) return {{0, in.nw, 0}};
+    std::vector<SweepLayer> layers;
     const int first = std::max(0, static_cast<int>(std::floor(in.eyeW)) + 1);
     for (int end = in.nw; end > first;) {
         const double away = end - 1 - in.eyeW;
         const int begin =
             away <= kNearest ? first : std::max(first, static_cast<int>(std::floor(in.eyeW + away / 2)) + 1);
-        addPieces(in, begin, end, in.raySpacing / away, pieces);
+        layers.push_back({begin, end, in.raySpacing / away});
         end = begin;
+    }
+    return layers;
+}
+
+SweepRect raysAround(const SweepInput& in, const SweepLayer& layer) {
+    const int begin = std::max(layer.begin, in.window.lo[2]), end = std::min(layer.end, in.window.hi[2]);
+    if (begin >= end || in.window.lo[0] >= in.window.hi[0] || in.window.lo[1] >= in.window.hi[1]) return {};
+    double lo[2] = {1e30, 1e30}, hi[2] = {-1e30, -1e30};
+    for (const int k : {begin, end - 1}) // monotone in w: the extremes are at the ends
+        for (int axis = 0; axis < 2; ++axis) {
+            const RayAxis rays = axis == 0 ? colsAt(in, layer, k) : rowsAt(in, layer, k);
+            double first = in.window.lo[axis], last = in.window.hi[axis] - 1;
+            leavePyramid(in, axis == 0 ? in.eyeU : in.eyeV, k - in.eyeW, first, last);
+            lo[axis] = std::min(lo[axis], rays.indexAt(first));
+            hi[axis] = std::max(hi[axis], rays.indexAt(last));
+        }
+    const auto floored = [](double v) { return static_cast<int>(std::floor(v)); };
+    return {floored(lo[1]), floored(hi[1]) + 2, floored(lo[0]), floored(hi[0]) + 2};
+}
+
+SweepRect raysThrough(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach) {
+    SweepInput whole = in;
+    whole.window = {{0, 0, 0}, {in.nu, in.nv, in.nw}};
+    const SweepRect all = raysAround(whole, layer);
+    const int size[2] = {in.nu, in.nv};
+    const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5, first = std::max(front, reach.lo[2]),
+                 last = std::min<double>(layer.end - 1, reach.hi[2]);
+    if (first > last) return {};
+    double lo[2] = {1e30, 1e30}, hi[2] = {-1e30, -1e30};
+    for (const double w : {first, last})
+        for (int axis = 0; axis < 2; ++axis) {
+            const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
+            // Nobody asks for rays that have gone far beyond the volume's sides.
+            const double low = std::max(reach.lo[axis], -kRayMargin - 1),
+                         high = std::min(reach.hi[axis], size[axis] + kRayMargin);
+            if (!(rays.scale > 0)) { // at the eye all rays are in one place
+                lo[axis] = -1e30;
+                hi[axis] = 1e30;
+                continue;
+            }
+            lo[axis] = std::min(lo[axis], rays.indexAt(low));
+            hi[axis] = std::max(hi[axis], rays.indexAt(high));
+        }
+    const auto clamped = [](double v, int least, int most) {
+        return static_cast<int>(std::clamp(v, static_cast<double>(least), static_cast<double>(most)));
+    };
+    SweepRect rect{
+        clamped(std::floor(lo[1]), all.firstRow, all.endRow), clamped(std::floor(hi[1]) + 1, all.firstRow, all.endRow),
+        clamped(std::floor(lo[0]), all.firstCol, all.endCol), clamped(std::floor(hi[0]) + 1, all.firstCol, all.endCol)};
+    return rect;
+}
+
+std::vector<SweepPiece> sweepPieces(const SweepInput& in, const SweepLayer& layer) {
+    const bool carried = in.endDepths != nullptr;
+    const SweepRect rays = carried ? in.endRect : raysAround(in, layer);
+    std::vector<SweepPiece> pieces;
+    if (rays.rays() == 0) return pieces;
+    // Voxels lie between rows of rays, the last of which is that of the next piece.
+    const int lastRow = carried ? rays.endRow : rays.endRow - 1;
+    const int begin = carried ? layer.begin : std::max(layer.begin, in.window.lo[2]),
+              end = carried ? layer.end : std::min(layer.end, in.window.hi[2]);
+    const int rows = std::clamp((lastRow - rays.firstRow) / kPiecesWanted, kFewestRows, kMostRows);
+    for (int b = rays.firstRow; b < lastRow; b += rows)
+        pieces.push_back({begin, end, layer.slopeStep, b, std::min(lastRow, b + rows), rays.firstCol, rays.endCol - 1,
+                          b == rays.firstRow, b + rows >= lastRow});
+    return pieces;
+}
+
+std::vector<SweepPiece> sweepPieces(const SweepInput& in) {
+    std::vector<SweepPiece> pieces;
+    for (const SweepLayer& layer : sweepLayers(in)) {
+        const auto more = sweepPieces(in, layer);
+        pieces.insert(pieces.end(), more.begin(), more.end());
     }
     return pieces;
 }

@@ -23,8 +23,8 @@ public:
     /// Takes rays from where they start, slice by slice, to one slice distance in front of each; there the voxels of
     /// the slice ask for what the rays have met.
     void run() {
-        int at = m_lines.start(); // the sample plane that the rays have come to
-        const auto goal = [&](int k) { return (k - 1) * m_in.stepsPerSlice; };
+        if (m_in.endDepths != nullptr) return carry();
+        int at = start(); // the sample plane that the rays have come to
         for (int k = m_piece.begin; k < m_piece.end; ++k) {
             for (; at < goal(k); ++at) {
                 const Advance advance = m_rays.advanceTo(at + 1);
@@ -40,6 +40,30 @@ public:
     }
 
 private:
+    int goal(int k) const { return (k - 1) * m_in.stepsPerSlice; }
+    /// Before the first sample plane on which rays count.
+    int start() const {
+        const int first = m_lines.start();
+        if (!m_in.bounded) return first;
+        const double before = m_in.reach.lo[2] * m_in.stepsPerSlice - (m_in.reach.fromInside ? 0 : 1);
+        return before <= first ? first : floorInt(before);
+    }
+
+    /// Takes rays through a block, measures nothing, and keeps what they have met: where they enter the reach of
+    /// another block, and at their end. The last slice of the piece needs no rays beyond the slice before.
+    void carry() {
+        const int last = goal(m_piece.end - 1);
+        for (int at = start(); at < last && m_lines.sampleW(at) < m_in.reach.hi[2]; ++at) {
+            const Advance go = m_rays.advanceTo(at + 1);
+            m_rays.prepareHandovers(go);
+            for (int b = m_piece.firstRow; b < m_piece.lastRow; ++b) {
+                m_rays.advanceRow(go, b);
+                m_rays.handOver(go, b);
+            }
+        }
+        m_rays.writeDepths();
+    }
+
     /// Measures the voxels of a slice, row by row, that lie between the piece's rows of rays, and takes each row of
     /// rays on, where `go` leads anywhere, once the voxels have passed it.
     void measureSlice(const Slice& slice, const Advance& go) {
@@ -50,8 +74,8 @@ private:
         const auto goOn = [&](int end) {
             for (; go.to != Advance::kNowhere && next < end; ++next) m_rays.advanceRow(go, next);
         };
-        const int firstRow = larger(extent.v0, m_piece.outermostLow ? 0 : floorInt(p.v(b0)) - 1),
-                  lastRow = smaller(extent.v1, m_piece.outermostHigh ? m_in.nv - 1 : ceilInt(p.v(b1)) + 1);
+        const int firstRow = larger(extent.v0, m_piece.outermostLow ? extent.v0 : floorInt(p.v(b0)) - 1),
+                  lastRow = smaller(extent.v1, m_piece.outermostHigh ? extent.v1 : ceilInt(p.v(b1)) + 1);
         for (int v = firstRow; v <= lastRow && extent.u0 <= extent.u1; ++v) {
             const double b = (v - p.baseV) / p.scale; // where among the rows of rays
             if ((b < b0 && !m_piece.outermostLow) || (b >= b1 && !m_piece.outermostHigh)) continue;

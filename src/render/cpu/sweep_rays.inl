@@ -162,16 +162,16 @@ public:
         return rows;
     }
 
-    /// The codes of the voxels (u … u + 7, v, k); anything beyond the end of the row.
+    /// The codes of the voxels (u … u + 7, v, k), of which u is stored; anything beyond the end of the row.
     void codesAt(int u, int v, int k, std::uint16_t (&codes)[kWide]) const {
         const Code* from = row(v, k);
         if (apart())
-            for (int n = 0; n < kWide; ++n) codes[n] = from[smaller(u + n, m_in.nu - 1) * m_in.codeStrides.u];
+            for (int n = 0; n < kWide; ++n) codes[n] = from[smaller(u + n, m_in.lastU) * m_in.codeStrides.u];
         else
             store(codes, asCodes(from + u));
     }
 
-    /// The volume at u = first + n·step, n = 0 … 7, along the rows.
+    /// The volume at u = first + n·step, n = 0 … 7, along the rows; anything where that is not stored.
     inline Samples sample(const Rows& rows, double first, double step) const {
         const float u0 = static_cast<float>(first), du = static_cast<float>(step);
         Vec8 near = {}, far = {}, total = {}, share = {};
@@ -188,7 +188,7 @@ public:
                 total += weight * (near + f * (far - near));
             }
         };
-        if (du == 1.0f && u0 >= 0.0f && u0 + (kWide - 1) < static_cast<float>(m_in.nu - 1)) {
+        if (du == 1.0f && u0 >= static_cast<float>(m_in.firstU) && u0 + (kWide - 1) < static_cast<float>(m_in.lastU)) {
             // A voxel apart and inside: all at the same fraction between neighbours in memory.
             const int x = static_cast<int>(u0);
             const Vec8 f = Vec8{} + (u0 - static_cast<float>(x));
@@ -197,10 +197,11 @@ public:
                 add(row, f);
             }
         } else {
-            const Vec8 zero = {}, last = zero + static_cast<float>(m_in.nu - 1);
-            const Int8 lastPair = Int8{} + larger(0, m_in.nu - 2);
+            const Vec8 zero = {}, begin = zero + static_cast<float>(m_in.firstU),
+                       last = zero + static_cast<float>(m_in.lastU);
+            const Int8 lastPair = Int8{} + larger(m_in.firstU, m_in.lastU - 1);
             Vec8 u = u0 + kIota * du;
-            u = u > zero ? u : zero;
+            u = u > begin ? u : begin;
             u = u < last ? u : last;
             Int8 x = toInt(u);
             x = x < lastPair ? x : lastPair;
@@ -328,13 +329,14 @@ public:
                   row = clampTo(floorInt(v + 0.5), 0, m_in.nv - 1) / kBlockSize,
                   slice = (m_in.flipped ? m_in.nw - 1 - k : k) / kBlockSize;
         return {m_in.opaque + row * m_in.opaqueStrides.v + slice * m_in.opaqueStrides.w,
-                m_in.opaqueSpans[row + ((m_in.nv - 1) / kBlockSize + 1) * slice]};
+                m_in.opaqueSpans[row + m_in.spanStride * slice]};
     }
     /// The lanes that are opaque in any block of a row from u = first to last.
     unsigned opaqueBetween(const std::uint8_t* row, double first, double last) const {
-        const int end = clampTo(static_cast<int>(last + 0.5), 0, m_in.nu - 1) / kBlockSize;
+        const int end = smaller(clampTo(static_cast<int>(last + 0.5), 0, m_in.nu - 1) / kBlockSize, m_in.lastBlockU);
         unsigned lanes = 0;
-        for (int i = clampTo(static_cast<int>(first + 0.5), 0, m_in.nu - 1) / kBlockSize; i <= end; ++i)
+        for (int i = larger(clampTo(static_cast<int>(first + 0.5), 0, m_in.nu - 1) / kBlockSize, m_in.firstBlockU);
+             i <= end; ++i)
             lanes |= row[i * m_in.opaqueStrides.u];
         return lanes;
     }
@@ -363,7 +365,7 @@ private:
         for (int n = 0; n < kWide; ++n) {
             const Code* at = row + x[n] * m_in.codeStrides.u;
             near[n] = static_cast<float>(*at);
-            far[n] = static_cast<float>(m_in.nu > 1 ? at[m_in.codeStrides.u] : *at);
+            far[n] = static_cast<float>(m_in.lastU > m_in.firstU ? at[m_in.codeStrides.u] : *at);
         }
     }
 
@@ -374,6 +376,11 @@ private:
 
 // ==== The grid of rays =====================================================================================
 
+/// The rays first … end − 1 of a row.
+struct RaySpan {
+    int first = 0, end = 0;
+};
+
 /// What rays go through from one sample plane to the next.
 struct Advance {
     static constexpr int kNowhere = -1000000;
@@ -381,6 +388,7 @@ struct Advance {
     double w0 = 0, w1 = 0;
     LinePlane p0{}, p1{};
     int firstBlock = 0, lastBlock = -1; ///< of rays inside the box
+    RaySpan going{};                    ///< bounded: the rays whose stretch counts, where the row does, too
 };
 
 /// Two neighbouring rows of rays, as the voxels between them see them.
@@ -404,9 +412,8 @@ class Rays {
 public:
     /// At the front, with no depth yet.
     Rays(const SweepInput& in, const SweepPiece& piece, const Lines<kCodes>& lines, SweepScratch& scratch)
-        : m_in(in), m_piece(piece), m_lines(lines), m_scale(depthScaleOf<kMode>(in)), m_b0(piece.firstRow),
-          m_b1(piece.lastRow) {
-        chooseRays();
+        : m_in(in), m_piece(piece), m_lines(lines), m_scale(depthScaleOf<kMode>(in)), m_a0(piece.firstRay),
+          m_a1(piece.lastRay), m_blocks((m_a1 - m_a0) / kWide + 1), m_b0(piece.firstRow), m_b1(piece.lastRow) {
         startRays(scratch);
     }
 
@@ -432,6 +439,7 @@ public:
             lo = lo0 < lo ? lo0 : lo;
             hi = hi0 > hi ? hi0 : hi;
         }
+        if (m_in.bounded) go.going = spanWithin(m_in.reach, go);
         if (hi < m_a0 || lo > m_a1) return go;
         go.firstBlock = lo < m_a0 ? 0 : (ceilInt(lo) - m_a0) / kWide;
         go.lastBlock = hi > m_a1 ? m_blocks - 1 : (floorInt(hi) - m_a0) / kWide;
@@ -451,12 +459,18 @@ public:
         const double v0 = p0.v(b), v1 = p1.v(b);
         const bool inside0 = m_lines.insideV(v0), inside1 = m_lines.insideV(v1);
         if (!inside0 && !inside1) return;
+        const bool bounded = m_in.bounded;
+        if (bounded && (go.going.first >= go.going.end || !rowWithin(m_in.reach, v0, v1))) return;
         const auto opaque = m_lines.opaqueRow(v1, w1);
         Blocks reach{m_blocks, -1};
         widen(reach, m_lines.opaqueRow(v0, w0).span, p0);
         widen(reach, opaque.span, p1);
         reach.first = larger(reach.first, go.firstBlock);
         reach.last = smaller(reach.last, go.lastBlock);
+        if (bounded) {
+            reach.first = larger(reach.first, (go.going.first - m_a0) / kWide);
+            reach.last = smaller(reach.last, (go.going.end - 1 - m_a0) / kWide);
+        }
         if (reach.first > reach.last) return;
 
         const auto before = m_lines.rowsAt(v0, w0), now = m_lines.rowsAt(v1, w1);
@@ -488,6 +502,10 @@ public:
             Vec8 path = load(m_length + ray) * slices;
             if (!(inside0 && inside1) || !m_lines.insideU(u1, end1) || !m_lines.insideU(p0.u(a), p0.u(a + kWide - 1)))
                 path *= m_lines.insideShare(p0, p1, a, b);
+            if (bounded && (a < go.going.first || a + kWide > go.going.end)) {
+                const Int8 index = toInt(kIota) + a;
+                path = (index >= go.going.first) & (index < go.going.end) ? path : Vec8{};
+            }
             if (m_lines.clips()) {
                 typename Lines<kCodes>::Kept kept;
                 const auto clipped = m_lines.clip(p0, p1, w0, w1, a, b, kept);
@@ -506,32 +524,82 @@ public:
         }
     }
 
+    // ---- Of a block of a volume alone ----
+
+    /// Where a row of rays has come to with `go`, those are handed over that enter the reach of another block there.
+    /// To be called for each row of a plane, after prepareHandovers(go).
+    void handOver(const Advance& go, int b) const {
+        if (m_handing == nullptr) return;
+        const double v0 = go.p0.v(b), v1 = go.p1.v(b);
+        if (go.going.first >= go.going.end || !(v1 >= m_in.reach.lo[1] && v1 < m_in.reach.hi[1])) return;
+        for (int i = 0; i < m_in.handoverCount; ++i) {
+            const SweepHandover& to = m_in.handovers[i];
+            const Handing& h = m_handing[i];
+            if (h.enter.first >= h.enter.end || b < to.rect.firstRow || b >= to.rect.endRow ||
+                !(v1 >= to.reach.lo[1] && v1 < to.reach.hi[1]))
+                continue;
+            const bool was = v0 >= to.reach.lo[1] && v0 < to.reach.hi[1];
+            for (int a = h.enter.first; a < h.enter.end; ++a) {
+                if (was && a >= h.were.first && a < h.were.end) continue;
+                const float* from = m_depth + (rowOf(b) * rowRays() + static_cast<std::size_t>(a - m_a0)) * K;
+                float* there = to.depths + to.rect.at(a, b, K);
+                for (int lane = 0; lane < K; ++lane) there[lane] = from[lane];
+            }
+        }
+    }
+    void prepareHandovers(const Advance& go) {
+        for (int i = 0; m_handing != nullptr && i < m_in.handoverCount; ++i) {
+            const SweepHandover& to = m_in.handovers[i];
+            Handing& h = m_handing[i];
+            h = {};
+            if (go.going.first >= go.going.end || !(go.w1 >= to.reach.lo[2] && go.w1 < to.reach.hi[2])) continue;
+            h.enter = spanAt(go.p1, to.reach);
+            h.enter.first = larger(larger(h.enter.first, go.going.first), to.rect.firstCol);
+            h.enter.end = smaller(smaller(smaller(h.enter.end, go.going.end), to.rect.endCol), m_a1 + 1);
+            if (go.w0 >= to.reach.lo[2] && go.w0 < to.reach.hi[2]) h.were = spanAt(go.p0, to.reach);
+        }
+    }
+    /// What the rays have met, to where the block's depths are kept.
+    void writeDepths() const {
+        for (int b = m_b0; b < m_b1; ++b) {
+            const float* from = m_depth + rowOf(b) * rowRays() * K;
+            float* to = m_in.endDepths + m_in.endRect.at(m_a0, b, K);
+            const std::size_t count = static_cast<std::size_t>(m_a1 - m_a0 + 1) * K;
+            for (std::size_t i = 0; i < count; ++i) to[i] = from[i];
+        }
+    }
+
 private:
+    /// Rays of one plane, of which some may be handed over.
+    struct Handing {
+        RaySpan enter; ///< that are in the other's reach, …
+        RaySpan were;  ///< … and those that were on the plane before
+    };
     std::size_t rows() const { return static_cast<std::size_t>(m_b1 - m_b0 + 1); }
     std::size_t rowRays() const { return static_cast<std::size_t>(m_blocks) * kWide; }
     std::size_t rowOf(int b) const { return static_cast<std::size_t>(b - m_b0); }
 
-    /// Sets m_a0, m_a1: the rays that voxels of the piece will ask for.
-    void chooseRays() {
-        double lo = 1e30, hi = -1e30;
-        for (const int k : {m_piece.begin, m_piece.end - 1}) { // monotone in w: the extremes are at the ends
-            const LinePlane p = plane(k);
-            double first = 0, last = m_in.nu - 1;
-            if (m_in.pyramid) {
-                first = first > m_in.eyeU - (k - m_in.eyeW) ? first : m_in.eyeU - (k - m_in.eyeW);
-                last = last < m_in.eyeU + (k - m_in.eyeW) ? last : m_in.eyeU + (k - m_in.eyeW);
-                if (first > last) { // none on this slice: any may come in between
-                    first = m_in.eyeU - (k - m_in.eyeW);
-                    last = m_in.eyeU + (k - m_in.eyeW);
-                }
-            }
-            first = (first - p.baseU) / p.scale, last = (last - p.baseU) / p.scale;
-            lo = first < lo ? first : lo;
-            hi = last > hi ? last : hi;
-        }
-        m_a0 = floorInt(lo);
-        m_a1 = floorInt(hi) + 1;
-        m_blocks = (m_a1 - m_a0) / kWide + 1;
+    /// The rays whose u on a plane lies in a reach. The same ray is found on the same side of a border by all blocks.
+    RaySpan spanAt(const LinePlane& p, const SweepReach& reach) const {
+        return {firstFrom(p, reach.lo[0]), firstFrom(p, reach.hi[0])};
+    }
+    int firstFrom(const LinePlane& p, double u) const {
+        const int end = m_a0 + m_blocks * kWide;
+        if (!(p.scale > 0)) return p.baseU >= u ? m_a0 : end; // at the eye: all are in one place
+        const double a = (u - p.baseU) / p.scale;
+        return a <= m_a0 ? m_a0 : a >= end ? end : ceilInt(a);
+    }
+    /// The rays of a row whose stretch counts, as far as u and w tell.
+    RaySpan spanWithin(const SweepReach& reach, const Advance& go) const {
+        if (!(go.w1 >= reach.lo[2] && go.w1 < reach.hi[2])) return {};
+        RaySpan span = spanAt(go.p1, reach);
+        if (!reach.fromInside) return span;
+        if (!(go.w0 >= reach.lo[2] && go.w0 < reach.hi[2])) return {};
+        const RaySpan before = spanAt(go.p0, reach);
+        return {larger(span.first, before.first), smaller(span.end, before.end)};
+    }
+    static bool rowWithin(const SweepReach& reach, double v0, double v1) {
+        return v1 >= reach.lo[1] && v1 < reach.hi[1] && (!reach.fromInside || (v0 >= reach.lo[1] && v0 < reach.hi[1]));
     }
 
     void startRays(SweepScratch& scratch) {
@@ -552,6 +620,24 @@ private:
         for (int b = m_b0; b <= m_b1; ++b)
             for (std::size_t i = 0; i < rowRays(); ++i)
                 m_length[rowOf(b) * rowRays() + i] = static_cast<float>(rayLength(m_a0 + static_cast<int>(i), b));
+        if (m_in.startDepths != nullptr) takeDepths();
+        if (m_in.handoverCount > 0)
+            m_handing = memory<Handing>(scratch, SweepScratch::Handing, static_cast<std::size_t>(m_in.handoverCount));
+    }
+    /// Rays go on with what they have met in other blocks.
+    void takeDepths() {
+        for (int b = m_b0; b <= m_b1; ++b)
+            for (int block = 0; block < m_blocks; ++block) {
+                const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
+                float* depths = m_depth + at * kWide * K;
+                for (int n = 0; n < kWide; ++n) {
+                    const int a = m_a0 + block * kWide + n;
+                    if (!m_in.startRect.holds(a, b)) continue;
+                    const float* from = m_in.startDepths + m_in.startRect.at(a, b, K);
+                    for (int lane = 0; lane < K; ++lane) depths[n * K + lane] = from[lane];
+                }
+                m_alive[at] = static_cast<std::uint8_t>(alive(depths));
+            }
     }
     /// From slice to slice, in d0; the same all along a ray.
     double rayLength(int a, int b) const {
@@ -597,8 +683,8 @@ private:
     const SweepPiece& m_piece;
     const Lines<kCodes> m_lines;
     const DepthScale m_scale;
-    int m_a0 = 0, m_a1 = 0;          ///< rays of a row that voxels lie between
-    int m_blocks = 0;                ///< of eight rays in a row; the last may go beyond m_a1
+    int m_a0, m_a1;                  ///< rays of a row that voxels lie between
+    int m_blocks;                    ///< of eight rays in a row; the last may go beyond m_a1
     int m_b0, m_b1;                  ///< rows of rays; m_b1 is the first of the next piece
     float* m_depth = nullptr;        ///< [row][ray][K]
     int* m_entry = nullptr;          ///< [row][ray], at the plane in m_stamp
@@ -607,6 +693,7 @@ private:
     int* m_stamp = nullptr;          ///< [row][block], the plane of the last sample
     std::uint8_t* m_alive = nullptr; ///< [row][block], a bit per lane that is not exhausted
     std::uint8_t* m_met = nullptr;   ///< [row][block], the lanes that are opaque around the last sample plane
+    Handing* m_handing = nullptr;    ///< per SweepInput::handovers; null: none
 };
 
 } // namespace

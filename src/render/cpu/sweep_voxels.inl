@@ -21,9 +21,9 @@ class Accounts; // sweep_accounts.inl: what becomes of the depths
 struct Extent {
     int u0, u1, v0, v1;
 };
-/// All, or those of the pyramid: no farther from the eye along u and v than along w.
+/// All of the window, or those of the pyramid: no farther from the eye along u and v than along w.
 inline Extent extentOf(const SweepInput& in, int k) {
-    Extent e{0, in.nu - 1, 0, in.nv - 1};
+    Extent e{in.window.lo[0], in.window.hi[0] - 1, in.window.lo[1], in.window.hi[1] - 1};
     if (!in.pyramid) return e;
     const double away = k - in.eyeW;
     const auto cut = [&](double eye, bool ownsTie, int& first, int& last) {

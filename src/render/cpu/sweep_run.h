@@ -1,0 +1,44 @@
+// Runs the pieces of sweeps on threads, and makes of many transfer functions as many sweeps as they need.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "base/job.h"
+#include "render/cpu/sweep.h"
+#include "render/cpu/sweep_tables.h"
+#include "saliency/vws.h"
+
+namespace pellucid {
+
+/// Keeps the memory that pieces are worked on in.
+class SweepRunner {
+public:
+    explicit SweepRunner(SweepKernel kernel) : m_kernel(kernel) {}
+
+    /// Adds the sums of all pieces to `sums` in their order, whatever thread made them. Throws Cancelled.
+    void run(const SweepInput& in, const std::vector<SweepPiece>& pieces, std::vector<double>& sums,
+             const JobControl& job = {});
+
+private:
+    std::shared_ptr<SweepScratch> borrowScratch();
+    void returnScratch(std::shared_ptr<SweepScratch> scratch);
+
+    SweepKernel m_kernel;
+    std::mutex m_mutex;
+    std::vector<std::shared_ptr<SweepScratch>> m_scratch;
+};
+
+/// One sweep: the kernel's sums, SweepTables::sumCount() of them.
+using SweepOnce = std::function<std::vector<double>(const SweepTables& tables, const JobControl& job)>;
+
+/// VisibilityEngine::sums() and jacobian() by as many sweeps as the transfer functions need.
+std::vector<FeatureSums> sumsByBatches(std::span<const TransferFunction> tfs, const SweepCodes& codes,
+                                       const WeightFields* weights, const JobControl& job, const SweepOnce& sweep);
+SumsJacobian jacobianByBatches(const TransferFunction& tf, const SweepCodes& codes, const WeightFields* weights,
+                               const JobControl& job, const SweepOnce& sweep);
+
+} // namespace pellucid
