@@ -42,10 +42,10 @@ private:
     std::vector<double> sweep(const View& view, const SweepTables& tables, const WeightFields* weights,
                               Grid<float>* field, const JobControl& job) {
         view.clipping.validate();
-        const Camera camera = m_volume.cameraFor(view.camera);
+        const Camera camera = sweepCamera(view.camera, m_volume.geometry());
         const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, m_volume.geometry());
         OpaqueMap opaque = m_volume.opaqueMap(tables, planes);
-        const std::vector<SweepPass> passes = m_volume.passesOf(camera);
+        const std::vector<SweepPass> passes = sweepPasses(camera, m_volume.geometry());
         std::vector<double> sums(tables.sumCount(), 0.0);
         for (std::size_t n = 0; n < passes.size(); ++n) {
             const SweepInput in = m_volume.input(camera, planes, passes[n], tables, opaque, weights, field);

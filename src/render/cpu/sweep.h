@@ -70,6 +70,9 @@ struct SweepRect {
     }
 };
 
+/// Of rays that no voxel of a block asks for: exhausted.
+inline constexpr float kUnknownDepth = 1e30f;
+
 /// Rays are handed over where they enter the reach of another block: what they have met so far.
 struct SweepHandover {
     SweepReach reach;
@@ -129,7 +132,7 @@ struct SweepInput {
     // Of a block of a volume alone (docs/method.md, "Blocks of a volume").
     bool bounded = false; ///< `reach` says where rays go on, and these are given:
     SweepReach reach{};
-    const float* startDepths = nullptr; ///< of startRect: what rays have met before; 0 of others. Null: of all
+    const float* startDepths = nullptr; ///< of startRect: what rays have met before; null: nothing
     SweepRect startRect;
     /// What rays have met at their end, of endRect, where they are carried and nothing is measured; null: measure.
     float* endDepths = nullptr;
@@ -189,6 +192,9 @@ std::vector<SweepLayer> sweepLayers(const SweepInput& input);
 SweepRect raysAround(const SweepInput& input, const SweepLayer& layer);
 /// The rays among raysAround() the whole volume that pass through `reach` within a layer.
 SweepRect raysThrough(const SweepInput& input, const SweepLayer& layer, const SweepReach& reach);
+
+/// Whether a ray of a layer passes through `reach`, or as good as does.
+bool passes(const SweepInput& input, const SweepLayer& layer, int a, int b, const SweepReach& reach);
 
 /// The pieces of a layer, or of all of a sweep: of the voxels of the window, or where rays are carried of endRect.
 /// Depends on the input alone, never on threads.

@@ -64,7 +64,9 @@ std::vector<SweepLayer> sweepLayers(const SweepInput& in) {
     return layers;
 }
 
-SweepRect raysAround(const SweepInput& in, const SweepLayer& layer) {
+namespace {
+
+SweepRect raysAroundWindow(const SweepInput& in, const SweepLayer& layer) {
     const int begin = std::max(layer.begin, in.window.lo[2]), end = std::min(layer.end, in.window.hi[2]);
     if (begin >= end || in.window.lo[0] >= in.window.hi[0] || in.window.lo[1] >= in.window.hi[1]) return {};
     double lo[2] = {1e30, 1e30}, hi[2] = {-1e30, -1e30};
@@ -80,10 +82,24 @@ SweepRect raysAround(const SweepInput& in, const SweepLayer& layer) {
     return {floored(lo[1]), floored(hi[1]) + 2, floored(lo[0]), floored(hi[0]) + 2};
 }
 
+SweepRect raysAroundAll(SweepInput in, const SweepLayer& layer) {
+    in.window = {{0, 0, 0}, {in.nu, in.nv, in.nw}};
+    return raysAroundWindow(in, layer);
+}
+
+/// Rays go together in groups along a row: in the same ones as those of the whole volume.
+int groupOf(int ray, const SweepRect& all) { return all.firstCol + (ray - all.firstCol) / kBlockSize * kBlockSize; }
+
+} // namespace
+
+SweepRect raysAround(const SweepInput& in, const SweepLayer& layer) {
+    SweepRect rect = raysAroundWindow(in, layer);
+    if (rect.rays() > 0) rect.firstCol = groupOf(rect.firstCol, raysAroundAll(in, layer));
+    return rect;
+}
+
 SweepRect raysThrough(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach) {
-    SweepInput whole = in;
-    whole.window = {{0, 0, 0}, {in.nu, in.nv, in.nw}};
-    const SweepRect all = raysAround(whole, layer);
+    const SweepRect all = raysAroundAll(in, layer);
     const int size[2] = {in.nu, in.nv};
     const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5, first = std::max(front, reach.lo[2]),
                  last = std::min<double>(layer.end - 1, reach.hi[2]);
@@ -109,7 +125,30 @@ SweepRect raysThrough(const SweepInput& in, const SweepLayer& layer, const Sweep
     SweepRect rect{
         clamped(std::floor(lo[1]), all.firstRow, all.endRow), clamped(std::floor(hi[1]) + 1, all.firstRow, all.endRow),
         clamped(std::floor(lo[0]), all.firstCol, all.endCol), clamped(std::floor(hi[0]) + 1, all.firstCol, all.endCol)};
+    rect.firstCol = groupOf(rect.firstCol, all);
     return rect;
+}
+
+bool passes(const SweepInput& in, const SweepLayer& layer, int a, int b, const SweepReach& reach) {
+    const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5;
+    constexpr double kNearly = 0.01; // voxels
+    double enter = std::max(front, reach.lo[2]), leave = reach.hi[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        const int ray = axis == 0 ? a : b;
+        const auto at = [&](double w) {
+            const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
+            return rays.base + ray * rays.scale;
+        };
+        const double x0 = at(0), slope = at(1) - x0, low = reach.lo[axis] - kNearly, high = reach.hi[axis] + kNearly;
+        if (slope == 0) {
+            if (x0 < low || x0 > high) return false;
+            continue;
+        }
+        const double w0 = (low - x0) / slope, w1 = (high - x0) / slope;
+        enter = std::max(enter, std::min(w0, w1));
+        leave = std::min(leave, std::max(w0, w1));
+    }
+    return enter <= leave;
 }
 
 std::vector<SweepPiece> sweepPieces(const SweepInput& in, const SweepLayer& layer) {

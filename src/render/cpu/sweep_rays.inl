@@ -624,7 +624,7 @@ private:
         if (m_in.handoverCount > 0)
             m_handing = memory<Handing>(scratch, SweepScratch::Handing, static_cast<std::size_t>(m_in.handoverCount));
     }
-    /// Rays go on with what they have met in other blocks.
+    /// Rays go on with what they have met in other blocks; those of which nothing is known are asked by nobody.
     void takeDepths() {
         for (int b = m_b0; b <= m_b1; ++b)
             for (int block = 0; block < m_blocks; ++block) {
@@ -632,9 +632,9 @@ private:
                 float* depths = m_depth + at * kWide * K;
                 for (int n = 0; n < kWide; ++n) {
                     const int a = m_a0 + block * kWide + n;
-                    if (!m_in.startRect.holds(a, b)) continue;
-                    const float* from = m_in.startDepths + m_in.startRect.at(a, b, K);
-                    for (int lane = 0; lane < K; ++lane) depths[n * K + lane] = from[lane];
+                    const float* from =
+                        m_in.startRect.holds(a, b) ? m_in.startDepths + m_in.startRect.at(a, b, K) : nullptr;
+                    for (int lane = 0; lane < K; ++lane) depths[n * K + lane] = from ? from[lane] : kUnknownDepth;
                 }
                 m_alive[at] = static_cast<std::uint8_t>(alive(depths));
             }

@@ -40,24 +40,116 @@ std::ptrdiff_t offsetOf(const SweepStrides& strides, const Int3& at) {
 
 } // namespace
 
+Vec3 sweepEye(const Camera& camera, const Geometry& geometry) {
+    return glm::round(geometry.voxelFromWorld(camera.eye) * 1048576.0) / 1048576.0;
+}
+
+Camera sweepCamera(const Camera& camera, const Geometry& g) {
+    camera.validate(g, "camera");
+    if (camera.projection != Projection::Perspective) return camera;
+    const Vec3 eye = camera.eye - g.boxCenter(), inVoxels = glm::abs(g.indexFromWorld() * eye);
+    if (std::max({inVoxels.x, inVoxels.y, inVoxels.z}) <= kFarEye) return camera;
+    Camera parallel = camera;
+    parallel.projection = Projection::Orthographic;
+    parallel.center = g.boxCenter();
+    parallel.up = std::abs(eye.z) > std::hypot(eye.x, eye.y) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+    parallel.height = 1; // of the image; no ray depends on it
+    return parallel;
+}
+
+std::vector<SweepPass> sweepPasses(const Camera& camera, const Geometry& g) {
+    const auto passOf = [](int w, bool flipped, bool pyramid) {
+        return SweepPass{w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped, pyramid};
+    };
+    if (camera.projection == Projection::Orthographic) {
+        const Vec3 d = g.indexFromWorld() * camera.forward();
+        int w = 0;
+        for (int a = 1; a < 3; ++a)
+            if (std::abs(d[a]) > std::abs(d[w])) w = a;
+        return {passOf(w, d[w] < 0, false)};
+    }
+    const Vec3 eye = sweepEye(camera, g), last = Vec3(g.dims - 1);
+    int best = -1;
+    double slope = kSteepest;
+    for (int w = 0; w < 3; ++w) {
+        const double away = std::max(0 - eye[w], eye[w] - last[w]); // of the nearest slice
+        if (away <= 0) continue;
+        double lateral = 0;
+        for (int a = 0; a < 3; ++a)
+            if (a != w) lateral = std::max({lateral, eye[a], last[a] - eye[a]});
+        if (lateral / away > slope) continue;
+        slope = lateral / away;
+        best = w;
+    }
+    if (best >= 0) return {passOf(best, eye[best] > 0, false)};
+    std::vector<SweepPass> passes;
+    for (int w = 0; w < 3; ++w)
+        for (const bool flipped : {false, true}) {
+            const double away = flipped ? eye[w] : last[w] - eye[w]; // of the farthest slice
+            bool any = away > 0;
+            for (int a = 0; a < 3; ++a)
+                if (a != w) any = any && eye[a] + away >= 0 && eye[a] - away <= last[a];
+            if (any) passes.push_back(passOf(w, flipped, true));
+        }
+    return passes;
+}
+
+void setSweepRays(SweepInput& in, const Camera& camera, const SweepPass& pass, const Geometry& g, SweepCare care) {
+    const Int3 size = pass.permuted(g.dims);
+    in.nu = size.x, in.nv = size.y, in.nw = size.z;
+    const double sign = pass.flipped ? -1 : 1; // w runs against the axis
+    const Mat3 axesInD0 = g.worldFromIndex() / g.d0();
+    const Vec3 u = axesInD0[pass.u], v = axesInD0[pass.v], w = sign * axesInD0[pass.w];
+    in.guu = glm::dot(u, u), in.gvv = glm::dot(v, v), in.gww = glm::dot(w, w);
+    in.guv = glm::dot(u, v), in.guw = glm::dot(u, w), in.gvw = glm::dot(v, w);
+    const bool large = care == SweepCare::Large;
+    const Sampling& sampling = large                          ? kLarge
+                               : care == SweepCare::LargeHigh ? kLargeHigh
+                               : care == SweepCare::Small     ? kSmall
+                               : in.nw > kMostFollowedFinely  ? kSmallHighLong
+                                                              : kSmallHigh;
+    in.stepsPerSlice = sampling.stepsPerSlice;
+    in.ownSteps = sampling.ownSteps;
+    in.tolerance = sampling.tolerance;
+    in.exhaustedDepth = static_cast<float>(!large                           ? kExhaustedExact
+                                           : in.mode == SweepMode::Jacobian ? kExhaustedDerivative
+                                                                            : kExhausted);
+    in.perspective = camera.projection == Projection::Perspective;
+    if (large && in.perspective) in.raySpacing = 1.2; // at most: nearer to the eye they are denser
+    if (!in.perspective) {
+        const Vec3 d = pass.permuted(g.indexFromWorld() * camera.forward());
+        in.slopeU = d.x / (sign * d.z);
+        in.slopeV = d.y / (sign * d.z);
+        return;
+    }
+    const Vec3 eye = pass.permuted(sweepEye(camera, g));
+    in.eyeU = eye.x;
+    in.eyeV = eye.y;
+    in.eyeW = pass.flipped ? in.nw - 1 - eye.z : eye.z;
+    in.pyramid = pass.pyramid;
+    in.ownsTieU = pass.w < pass.u;
+    in.ownsTieV = pass.w < pass.v;
+}
+
 SweepVolume::SweepVolume(std::shared_ptr<const Volume> volume, Quality quality, bool draft)
-    : m_volume(std::move(volume)), m_geometry(m_volume->geometry()), m_quality(quality), m_draft(draft) {
+    : m_volume(std::move(volume)), m_geometry(m_volume->geometry()) {
+    const bool high = quality == Quality::High, small = !draft && m_volume->size() < kSmallVolume;
+    m_care =
+        small ? (high ? SweepCare::SmallHigh : SweepCare::Small) : (high ? SweepCare::LargeHigh : SweepCare::Large);
     makeCodes();
 }
 
 SweepVolume::SweepVolume(std::shared_ptr<const Volume> block, const Geometry& whole, const Int3& first)
-    : m_volume(std::move(block)), m_geometry(whole), m_first(first), m_quality(Quality::Normal), m_draft(true) {
+    : m_volume(std::move(block)), m_geometry(whole), m_first(first), m_care(SweepCare::Large) {
     makeCodes();
 }
-
-bool SweepVolume::isSmall() const { return !m_draft && m_volume->size() < kSmallVolume; }
 
 void SweepVolume::makeCodes() {
     m_shared = sharedIntensityGrid(*m_volume);
     const IntensityGrid& grid = *m_shared;
     const bool someInvalid = !grid.valid.empty();
     // Without gaps, so that tables are short; and with one code for all that is invalid.
-    m_codeSpace = {grid.maxCode / grid.codeStep, someInvalid, m_quality == Quality::High || isSmall()};
+    m_codeSpace = {grid.maxCode / grid.codeStep, someInvalid, m_care != SweepCare::Large};
     static_assert(kCodePadding <= CodeGrid::kPadding);
     if (!grid.codes.isNarrow() && (grid.codeStep > 1 || someInvalid)) makeOwnCodes(grid);
     m_firstBlock = m_first / kBlockSize;
@@ -116,99 +208,6 @@ void SweepVolume::widen(std::array<std::uint16_t, 2>* ranges, const Code* codes)
         }
         ranges[block] = {low, high};
     }
-}
-
-Vec3 SweepVolume::eyeInVoxels(const Camera& camera) const {
-    return glm::round(m_geometry.voxelFromWorld(camera.eye) * 1048576.0) / 1048576.0;
-}
-
-Camera SweepVolume::cameraFor(const Camera& camera) const {
-    const Geometry& g = m_geometry;
-    camera.validate(g, "camera");
-    if (camera.projection != Projection::Perspective) return camera;
-    const Vec3 eye = camera.eye - g.boxCenter(), inVoxels = glm::abs(g.indexFromWorld() * eye);
-    if (std::max({inVoxels.x, inVoxels.y, inVoxels.z}) <= kFarEye) return camera;
-    Camera parallel = camera;
-    parallel.projection = Projection::Orthographic;
-    parallel.center = g.boxCenter();
-    parallel.up = std::abs(eye.z) > std::hypot(eye.x, eye.y) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
-    parallel.height = 1; // of the image; no ray depends on it
-    return parallel;
-}
-
-std::vector<SweepPass> SweepVolume::passesOf(const Camera& camera) const {
-    const auto passOf = [](int w, bool flipped, bool pyramid) {
-        return SweepPass{w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped, pyramid};
-    };
-    const Geometry& g = m_geometry;
-    if (camera.projection == Projection::Orthographic) {
-        const Vec3 d = g.indexFromWorld() * camera.forward();
-        int w = 0;
-        for (int a = 1; a < 3; ++a)
-            if (std::abs(d[a]) > std::abs(d[w])) w = a;
-        return {passOf(w, d[w] < 0, false)};
-    }
-    const Vec3 eye = eyeInVoxels(camera), last = Vec3(g.dims - 1);
-    int best = -1;
-    double slope = kSteepest;
-    for (int w = 0; w < 3; ++w) {
-        const double away = std::max(0 - eye[w], eye[w] - last[w]); // of the nearest slice
-        if (away <= 0) continue;
-        double lateral = 0;
-        for (int a = 0; a < 3; ++a)
-            if (a != w) lateral = std::max({lateral, eye[a], last[a] - eye[a]});
-        if (lateral / away > slope) continue;
-        slope = lateral / away;
-        best = w;
-    }
-    if (best >= 0) return {passOf(best, eye[best] > 0, false)};
-    std::vector<SweepPass> passes;
-    for (int w = 0; w < 3; ++w)
-        for (const bool flipped : {false, true}) {
-            const double away = flipped ? eye[w] : last[w] - eye[w]; // of the farthest slice
-            bool any = away > 0;
-            for (int a = 0; a < 3; ++a)
-                if (a != w) any = any && eye[a] + away >= 0 && eye[a] - away <= last[a];
-            if (any) passes.push_back(passOf(w, flipped, true));
-        }
-    return passes;
-}
-
-void SweepVolume::setRays(SweepInput& in, const Camera& camera, const SweepPass& pass) const {
-    const Geometry& g = m_geometry;
-    const double sign = pass.flipped ? -1 : 1; // w runs against the axis
-    const Mat3 axesInD0 = g.worldFromIndex() / g.d0();
-    const Vec3 u = axesInD0[pass.u], v = axesInD0[pass.v], w = sign * axesInD0[pass.w];
-    in.guu = glm::dot(u, u), in.gvv = glm::dot(v, v), in.gww = glm::dot(w, w);
-    in.guv = glm::dot(u, v), in.guw = glm::dot(u, w), in.gvw = glm::dot(v, w);
-    const bool high = m_quality == Quality::High;
-    // What is off averages out over many voxels, which small volumes do not have; but they have the time.
-    const bool small = isSmall();
-    const Sampling& sampling = !small                        ? (high ? kLargeHigh : kLarge)
-                               : !high                       ? kSmall
-                               : in.nw > kMostFollowedFinely ? kSmallHighLong
-                                                             : kSmallHigh;
-    in.stepsPerSlice = sampling.stepsPerSlice;
-    in.ownSteps = sampling.ownSteps;
-    in.tolerance = sampling.tolerance;
-    in.exhaustedDepth = static_cast<float>(high || small                    ? kExhaustedExact
-                                           : in.mode == SweepMode::Jacobian ? kExhaustedDerivative
-                                                                            : kExhausted);
-    in.perspective = camera.projection == Projection::Perspective;
-    if (!high && !small && in.perspective) in.raySpacing = 1.2; // at most: nearer to the eye they are denser
-    if (!in.perspective) {
-        const Vec3 d = pass.permuted(g.indexFromWorld() * camera.forward());
-        in.slopeU = d.x / (sign * d.z);
-        in.slopeV = d.y / (sign * d.z);
-        return;
-    }
-    const Vec3 eye = pass.permuted(eyeInVoxels(camera));
-    in.eyeU = eye.x;
-    in.eyeV = eye.y;
-    in.eyeW = pass.flipped ? in.nw - 1 - eye.z : eye.z;
-    in.pyramid = pass.pyramid;
-    in.ownsTieU = pass.w < pass.u;
-    in.ownsTieV = pass.w < pass.v;
 }
 
 void SweepVolume::setPlanes(SweepInput& in, std::span<const VoxelPlane> planes, const SweepPass& pass) {
@@ -299,9 +298,8 @@ SweepInput SweepVolume::input(const Camera& camera, std::span<const VoxelPlane> 
                               Grid<float>* field) {
     SweepInput in;
     tables.giveTo(in);
-    const Int3 whole = pass.permuted(m_geometry.dims), first = pass.permuted(m_first),
-               stored = pass.permuted(m_volume->dims());
-    in.nu = whole.x, in.nv = whole.y, in.nw = whole.z;
+    setSweepRays(in, camera, pass, m_geometry, m_care);
+    const Int3 first = pass.permuted(m_first), stored = pass.permuted(m_volume->dims());
     in.firstU = first.x, in.lastU = first.x + stored.x - 1;
     setCodes(in, pass);
     in.someInvalid = m_codeSpace.someInvalid;
@@ -329,7 +327,6 @@ SweepInput SweepVolume::input(const Camera& camera, std::span<const VoxelPlane> 
         }
     }
     if (field) in.field = field->data() + value;
-    setRays(in, camera, pass);
     setPlanes(in, planes, pass);
     in.window = {{0, 0, 0}, {in.nu, in.nv, in.nw}};
     return in;

@@ -24,6 +24,20 @@ struct SweepPass {
     Int3 permuted(const Int3& p) const { return {p[u], p[v], p[w]}; }
 };
 
+/// How carefully lines are sampled: what is off averages out over many voxels, which small volumes do not have; but
+/// they have the time.
+enum class SweepCare { Large, LargeHigh, Small, SmallHigh };
+
+/// The same camera, but where its rays are as good as parallel. Throws Error where it is inside the volume.
+Camera sweepCamera(const Camera& camera, const Geometry& geometry);
+/// In voxels, rounded, so that differences from voxels are exact and each voxel is on one side of a pyramid's face.
+Vec3 sweepEye(const Camera& camera, const Geometry& geometry);
+/// Axes are compared in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
+std::vector<SweepPass> sweepPasses(const Camera& camera, const Geometry& geometry);
+/// Sets the size of the volume, and what SweepInput says of rays; its mode is set.
+void setSweepRays(SweepInput& in, const Camera& camera, const SweepPass& pass, const Geometry& geometry,
+                  SweepCare care);
+
 /// The blocks of kBlockSize³ voxels that a sweep has to look at, under one view and its transfer functions.
 struct OpaqueMap {
     std::vector<std::uint8_t> blocks; ///< as SweepInput::opaque
@@ -43,11 +57,6 @@ public:
     const SweepCodes& codes() const { return m_codeSpace; }
     VoxelRegion region() const { return {m_first, m_first + m_volume->dims()}; } ///< that is stored
 
-    /// The same camera, but where its rays are as good as parallel. Throws Error where it is inside the volume.
-    Camera cameraFor(const Camera& camera) const;
-    /// Axes are compared in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
-    std::vector<SweepPass> passesOf(const Camera& camera) const;
-
     OpaqueMap opaqueMap(const SweepTables& tables, std::span<const VoxelPlane> planes) const;
     /// What a pass of a view is, with all of its volume to be measured. `weights` and `field`, where not null, have the
     /// shape of what is stored. Refers to `tables`, `opaque` (whose spans it sets), `weights`, `field` and this.
@@ -55,7 +64,6 @@ public:
                      const SweepTables& tables, OpaqueMap& opaque, const WeightFields* weights, Grid<float>* field);
 
 private:
-    bool isSmall() const;
     void makeCodes();
     void makeOwnCodes(const IntensityGrid& grid);
     void findRanges();
@@ -63,9 +71,6 @@ private:
     void widen(std::array<std::uint16_t, 2>* ranges, const Code* codes) const;
     const std::uint8_t* narrowCodes() const { return m_shared ? m_shared->codes.narrow() : nullptr; }
     const std::uint16_t* wideCodes() const { return m_shared ? m_shared->codes.wide() : m_codes.data(); }
-    /// Rounded, so that differences from voxels are exact and each voxel is on one side of a pyramid's face.
-    Vec3 eyeInVoxels(const Camera& camera) const;
-    void setRays(SweepInput& in, const Camera& camera, const SweepPass& pass) const;
     static void setPlanes(SweepInput& in, std::span<const VoxelPlane> planes, const SweepPass& pass);
     void setCodes(SweepInput& in, const SweepPass& pass);
     void setOpaque(SweepInput& in, OpaqueMap& opaque, const SweepPass& pass) const;
@@ -74,8 +79,7 @@ private:
     std::shared_ptr<const Volume> m_volume;
     Geometry m_geometry;
     Int3 m_first{0, 0, 0};
-    Quality m_quality;
-    bool m_draft;
+    SweepCare m_care;
     SweepCodes m_codeSpace;
     std::shared_ptr<const IntensityGrid> m_shared; ///< whose codes are read as they are; null: m_codes are
     ZeroedVector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more: without gaps, or with invalid ones

@@ -1,0 +1,25 @@
+#include "ranks/block_volume.h"
+
+#include "volume/excerpt.h"
+
+namespace pellucid {
+
+BlockVolume blockOf(const std::shared_ptr<const Volume>& whole, const Decomposition& blocks, int own,
+                    const Int3& ghosts) {
+    BlockVolume block;
+    block.whole = whole->geometry();
+    block.whole.referenceLength = block.whole.d0();
+    block.blocks = blocks;
+    block.own = own;
+    block.region = widened(block.block(), ghosts, whole->dims());
+    if (isEmpty(block.region)) return block;
+    ExcerptPlan plan;
+    plan.region = block.region;
+    plan.dims = block.region.hi - block.region.lo;
+    plan.excerpt = {whole->dims(), block.region, 1, false};
+    plan.referenceLength = block.whole.d0();
+    block.stored = std::make_shared<const Volume>(excerptOf(*whole, plan));
+    return block;
+}
+
+} // namespace pellucid

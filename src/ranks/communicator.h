@@ -1,0 +1,77 @@
+// What ranks say to each other: the interface; src/ranks/mpi has the one by MPI.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "base/error.h"
+
+namespace pellucid {
+
+/// Another rank cannot go on. What is wrong is said by that rank alone.
+class RankLost : public Error {
+public:
+    RankLost() : Error("another rank cannot go on", "", "see what it says") {}
+};
+
+/// Bytes for a rank, or from one.
+struct RankMessage {
+    int rank = 0;
+    std::vector<std::byte> bytes;
+};
+
+/// What has been sent, for those who compare it with a model.
+struct Traffic {
+    std::uint64_t bytes = 0;    ///< to other ranks
+    std::uint64_t messages = 0; ///< likewise
+    std::uint64_t rounds = 0;   ///< of messages that wait for each other
+};
+
+/// A group of ranks that run the same program on different blocks. All calls are collective: every rank makes the same
+/// ones in the same order. Calls throw RankLost where another rank cannot go on.
+class Communicator {
+public:
+    virtual ~Communicator() = default;
+    virtual int rank() const = 0; ///< of this one, in [0, size())
+    virtual int size() const = 0;
+
+    /// Hands over messages, at most one for each rank; returns those for this rank, by ascending rank of the sender.
+    virtual std::vector<RankMessage> exchange(std::vector<RankMessage> messages) = 0;
+    /// The elements of all ranks added up, in an order that depends on size() alone: all get the same bits.
+    virtual void sum(std::span<double> values) = 0;
+    /// The bytes of rank 0, for all.
+    virtual void broadcast(std::vector<std::byte>& bytes) = 0;
+    /// Those of each rank, in their order, for all.
+    virtual std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) = 0;
+    virtual void barrier() = 0;
+
+    const Traffic& traffic() const { return m_traffic; }
+
+protected:
+    Traffic m_traffic;
+};
+
+// ---- Values as bytes: all ranks run the same program on machines of one kind ----
+
+template <class T>
+std::span<const std::byte> bytesOf(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return std::as_bytes(std::span<const T>(&value, 1));
+}
+
+/// The value of each rank.
+template <class T>
+std::vector<T> gatherValues(Communicator& ranks, const T& value) {
+    std::vector<T> all;
+    for (const auto& bytes : ranks.gather(bytesOf(value))) {
+        T& one = all.emplace_back();
+        std::memcpy(&one, bytes.data(), sizeof one);
+    }
+    return all;
+}
+
+} // namespace pellucid

@@ -1,0 +1,165 @@
+#include "ranks/depth_exchange.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/check.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kTile = 64;                       ///< rays along each side
+constexpr std::size_t kBytesAtOnce = 32u << 20; ///< of depths of all tiles that are under way
+
+SweepRect common(const SweepRect& a, const SweepRect& b) {
+    return {std::max(a.firstRow, b.firstRow), std::min(a.endRow, b.endRow), std::max(a.firstCol, b.firstCol),
+            std::min(a.endCol, b.endCol)};
+}
+
+/// Tiles of a rectangle of rays, in rows.
+class Tiles {
+public:
+    explicit Tiles(const SweepRect& all)
+        : m_all(all), m_cols((all.endCol - all.firstCol + kTile - 1) / kTile),
+          m_rows((all.endRow - all.firstRow + kTile - 1) / kTile) {}
+    int count() const { return m_cols * m_rows; }
+    SweepRect at(int tile) const {
+        const int row = m_all.firstRow + tile / m_cols * kTile, col = m_all.firstCol + tile % m_cols * kTile;
+        return common({row, row + kTile, col, col + kTile}, m_all);
+    }
+
+private:
+    SweepRect m_all;
+    int m_cols, m_rows;
+};
+
+/// What stands before the depths of a part of a tile in a message.
+struct PartHead {
+    int tile = 0;
+    int to = -1; ///< block whose reach is entered; −1: the whole way
+    SweepRect rect;
+};
+
+void append(std::vector<std::byte>& bytes, const RayDepths& depths, const PartHead& head) {
+    const auto add = [&](const void* data, std::size_t count) {
+        const auto* first = static_cast<const std::byte*>(data);
+        bytes.insert(bytes.end(), first, first + count);
+    };
+    add(&head, sizeof head);
+    const auto cols = static_cast<std::size_t>(head.rect.endCol - head.rect.firstCol);
+    for (int row = head.rect.firstRow; row < head.rect.endRow; ++row)
+        add(depths.values.data() + depths.rect.at(head.rect.firstCol, row, depths.lanes),
+            cols * static_cast<std::size_t>(depths.lanes) * sizeof(float));
+}
+
+/// Whether any ray of a part is handed over.
+bool isHanded(const RayDepths& depths, const SweepRect& part) {
+    for (int row = part.firstRow; row < part.endRow; ++row)
+        for (int col = part.firstCol; col < part.endCol; ++col)
+            if (depths.values[depths.rect.at(col, row, depths.lanes)] >= 0) return true;
+    return false;
+}
+
+struct Part {
+    PartHead head;
+    int from = 0;
+    RayDepths depths;
+};
+
+/// The parts that a message holds.
+void readParts(const RankMessage& message, int lanes, std::vector<Part>& parts) {
+    std::size_t at = 0;
+    while (at < message.bytes.size()) {
+        Part& part = parts.emplace_back();
+        part.from = message.rank;
+        std::memcpy(&part.head, message.bytes.data() + at, sizeof part.head);
+        at += sizeof part.head;
+        part.depths = RayDepths(part.head.rect, lanes, 0);
+        const std::size_t bytes = part.depths.values.size() * sizeof(float);
+        PELLUCID_CHECK(at + bytes <= message.bytes.size());
+        std::memcpy(part.depths.values.data(), message.bytes.data() + at, bytes);
+        at += bytes;
+    }
+}
+
+/// Calls body(ray of `into`, ray of `from`) for those that both have; each points to its lanes.
+template <class Into, class From, class Body>
+void forCommonRays(Into& into, From& from, const Body& body) {
+    const SweepRect both = common(into.rect, from.rect);
+    for (int row = both.firstRow; row < both.endRow; ++row)
+        for (int col = both.firstCol; col < both.endCol; ++col)
+            body(into.values.data() + into.rect.at(col, row, into.lanes),
+                 from.values.data() + from.rect.at(col, row, from.lanes));
+}
+
+} // namespace
+
+RayDepths depthsBefore(Communicator& ranks, const std::vector<int>& order, const SweepRect& all,
+                       const SweepRect& wanted, CarriedDepths carried, int lanes) {
+    RayDepths before(wanted, lanes, kNotHanded);
+    if (all.rays() == 0) return before;
+    const Tiles tiles(all);
+    const auto count = static_cast<std::size_t>(ranks.size());
+    const auto lanesOf = static_cast<std::size_t>(lanes);
+    std::vector<std::size_t> placeOf(count); // in the order
+    for (std::size_t i = 0; i < count; ++i) placeOf[static_cast<std::size_t>(order[i])] = i;
+    const int atOnce = static_cast<int>(
+        std::max<std::size_t>(count, kBytesAtOnce * count / (std::size_t{kTile} * kTile * lanesOf * sizeof(float))));
+
+    for (int first = 0; first < tiles.count(); first += atOnce) {
+        const int end = std::min(tiles.count(), first + atOnce);
+        std::vector<RankMessage> out(count);
+        for (std::size_t r = 0; r < count; ++r) out[r].rank = static_cast<int>(r);
+        for (int tile = first; tile < end; ++tile) {
+            auto& bytes = out[static_cast<std::size_t>(tile) % count].bytes;
+            const SweepRect rect = tiles.at(tile);
+            if (const SweepRect part = common(rect, carried.through.rect); part.rays() > 0)
+                append(bytes, carried.through, {tile, -1, part});
+            for (const HandedDepths& handed : carried.handed)
+                if (const SweepRect part = common(rect, handed.depths.rect);
+                    part.rays() > 0 && isHanded(handed.depths, part))
+                    append(bytes, handed.depths, {tile, handed.to, part});
+        }
+        if (end == tiles.count()) carried = {}; // its memory is wanted
+        std::vector<Part> parts;
+        for (const RankMessage& message : ranks.exchange(std::move(out))) readParts(message, lanes, parts);
+
+        // Of each tile the blocks in their order; what is handed over by a block comes before its whole way.
+        std::ranges::stable_sort(parts, {}, [&](const Part& part) {
+            return std::tuple(part.head.tile, placeOf[static_cast<std::size_t>(part.from)], part.head.to < 0);
+        });
+        std::vector<RankMessage> back(count);
+        for (std::size_t r = 0; r < count; ++r) back[r].rank = static_cast<int>(r);
+        RayDepths sum;
+        int tile = -1;
+        for (Part& part : parts) {
+            if (part.head.tile != tile) {
+                tile = part.head.tile;
+                sum = RayDepths(tiles.at(tile), lanes, 0);
+            }
+            if (part.head.to < 0) {
+                forCommonRays(sum, part.depths, [&](float* total, const float* more) {
+                    for (std::size_t lane = 0; lane < lanesOf; ++lane) total[lane] += more[lane];
+                });
+                continue;
+            }
+            forCommonRays(part.depths, sum, [&](float* handed, const float* total) {
+                if (handed[0] < 0) return;
+                for (std::size_t lane = 0; lane < lanesOf; ++lane) handed[lane] += total[lane];
+            });
+            append(back[static_cast<std::size_t>(part.head.to)].bytes, part.depths, part.head);
+        }
+        parts.clear();
+        std::vector<Part> mine;
+        for (const RankMessage& message : ranks.exchange(std::move(back))) readParts(message, lanes, mine);
+        for (const Part& part : mine)
+            forCommonRays(before, part.depths, [&](float* here, const float* handed) {
+                if (handed[0] < 0) return;
+                for (std::size_t lane = 0; lane < lanesOf; ++lane) here[lane] = handed[lane];
+            });
+    }
+    return before;
+}
+
+} // namespace pellucid

@@ -1,0 +1,43 @@
+// From what each block absorbs of the light of rays to what reaches each block (docs/method.md, "Blocks of a volume").
+#pragma once
+
+#include <vector>
+
+#include "ranks/communicator.h"
+#include "render/cpu/sweep.h"
+
+namespace pellucid {
+
+/// Optical depths of rays, [row][col][lanes], in units of the sweep's tables.
+struct RayDepths {
+    SweepRect rect;
+    int lanes = 1;
+    std::vector<float> values;
+
+    RayDepths() = default;
+    RayDepths(const SweepRect& rays, int lanesOfEach, float fill)
+        : rect(rays), lanes(lanesOfEach), values(rays.rays() * static_cast<std::size_t>(lanesOfEach), fill) {}
+};
+
+/// Depths of rays where they enter the reach of block `to`; below 0 in the first lane: of those that do not.
+struct HandedDepths {
+    int to = 0;
+    RayDepths depths;
+};
+inline constexpr float kNotHanded = -1;
+
+/// What a block has found of one layer of a sweep by itself, as if no light were lost before it.
+struct CarriedDepths {
+    RayDepths through; ///< of the whole way through the block
+    std::vector<HandedDepths> handed;
+};
+
+/// What rays have met before they enter the reach of this rank's block: the sum over the blocks before it. Rays are cut
+/// into tiles; each tile has a rank that adds up what all blocks tell of it, in their `order` from the eye on, and
+/// tells each of them. Two rounds of messages for a part of the tiles at a time, whatever the number of ranks.
+///   all     the rays of the layer
+///   wanted  those of this block
+RayDepths depthsBefore(Communicator& ranks, const std::vector<int>& order, const SweepRect& all,
+                       const SweepRect& wanted, CarriedDepths carried, int lanes);
+
+} // namespace pellucid

@@ -1,0 +1,222 @@
+#include "ranks/rank_engine.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "ranks/depth_exchange.h"
+#include "render/cpu/sweep_run.h"
+#include "render/cpu/sweep_volume.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+
+/// A region in the coordinates of a pass.
+SweepBox boxOf(const VoxelRegion& region, const SweepPass& pass, const Int3& dims) {
+    const Int3 lo = pass.permuted(region.lo), hi = pass.permuted(region.hi);
+    SweepBox box{{lo.x, lo.y, lo.z}, {hi.x, hi.y, hi.z}};
+    if (!pass.flipped) return box;
+    const int nw = dims[pass.w];
+    box.lo[2] = nw - hi.z;
+    box.hi[2] = nw - lo.z;
+    return box;
+}
+
+bool isEmpty(const SweepBox& box) { return box.lo[0] >= box.hi[0] || box.lo[1] >= box.hi[1] || box.lo[2] >= box.hi[2]; }
+
+/// Stretches of rays that belong to a block: each belongs to one. The outermost blocks have what lies beyond.
+SweepReach ownReach(const SweepBox& box, const Int3& whole) {
+    SweepReach reach;
+    for (int a = 0; a < 3; ++a) {
+        reach.lo[a] = box.lo[a] == 0 ? -kEverywhere : box.lo[a] - 0.5;
+        reach.hi[a] = box.hi[a] == whole[a] ? kEverywhere : box.hi[a] - 0.5;
+    }
+    return reach;
+}
+
+/// Where rays go on their last way to the voxels of a block: as far as those around its voxels lie off, up to the slice
+/// in front of the last one.
+SweepReach reachAround(const SweepBox& box) {
+    SweepReach reach;
+    for (int a = 0; a < 2; ++a) {
+        reach.lo[a] = box.lo[a] - kRayMargin;
+        reach.hi[a] = box.hi[a] - 1 + kRayMargin;
+    }
+    reach.lo[2] = box.lo[2] - 1;
+    reach.hi[2] = box.hi[2] - 1;
+    reach.fromInside = true;
+    return reach;
+}
+
+/// What both have; nothing where they do not meet.
+std::optional<SweepReach> common(const SweepReach& a, const SweepReach& b) {
+    SweepReach both;
+    for (int axis = 0; axis < 3; ++axis) {
+        both.lo[axis] = std::max(a.lo[axis], b.lo[axis]);
+        both.hi[axis] = std::min(a.hi[axis], b.hi[axis]);
+        if (!(both.lo[axis] < both.hi[axis])) return {};
+    }
+    return both;
+}
+
+SweepRect common(const SweepRect& a, const SweepRect& b) {
+    return {std::max(a.firstRow, b.firstRow), std::min(a.endRow, b.endRow), std::max(a.firstCol, b.firstCol),
+            std::min(a.endCol, b.endCol)};
+}
+
+class RankEngine final : public VisibilityEngine {
+public:
+    RankEngine(Communicator& ranks, const BlockVolume& block)
+        : m_ranks(ranks), m_block(block), m_runner(sweepKernels().front()) {
+        PELLUCID_CHECK(static_cast<int>(block.blocks.blocks().size()) == ranks.size());
+        if (!block.isEmpty()) m_volume.emplace(block.stored, block.whole, block.region.lo);
+        // Tables depend on how many codes there are: where a rank has none it takes another's.
+        SweepCodes codes;
+        codes.max = 0;
+        if (m_volume) codes = m_volume->codes();
+        for (const SweepCodes& other : gatherValues(ranks, codes)) {
+            if (codes.max == 0) codes.max = other.max;
+            PELLUCID_CHECK(other.max == 0 || other.max == codes.max);
+        }
+        m_codes = codes;
+    }
+
+    std::string name() const override { return "cpu"; }
+    const Volume& volume() const override {
+        PELLUCID_CHECK(m_volume.has_value());
+        return m_volume->stored();
+    }
+
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights,
+                                  const JobControl& job) override {
+        return sumsByBatches(tfs, m_codes, weights, job, [&](const SweepTables& tables, const JobControl& part) {
+            return sweep(view, tables, weights, nullptr, part);
+        });
+    }
+    SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
+                          const JobControl& job) override {
+        return jacobianByBatches(tf, m_codes, weights, job, [&](const SweepTables& tables, const JobControl& part) {
+            return sweep(view, tables, weights, nullptr, part);
+        });
+    }
+    VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job) override {
+        VisibilityField field{Grid<float>(m_block.isEmpty() ? Int3(0) : m_block.stored->dims())};
+        sweep(view, SweepTables({&tf, 1}, m_codes), nullptr, &field.values, job);
+        return field;
+    }
+
+private:
+    std::vector<double> sweep(const View& view, const SweepTables& tables, const WeightFields* weights,
+                              Grid<float>* field, const JobControl& job) {
+        view.clipping.validate();
+        const Camera camera = sweepCamera(view.camera, m_block.whole);
+        const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, m_block.whole);
+        const std::vector<int> order =
+            camera.projection == Projection::Perspective
+                ? m_block.blocks.orderFrom(sweepEye(camera, m_block.whole))
+                : m_block.blocks.orderAlong(m_block.whole.indexFromWorld() * camera.forward());
+        OpaqueMap opaque;
+        if (m_volume) opaque = m_volume->opaqueMap(tables, planes);
+        std::vector<double> sums(tables.sumCount(), 0.0);
+        const std::vector<SweepPass> passes = sweepPasses(camera, m_block.whole);
+        for (std::size_t n = 0; n < passes.size(); ++n) {
+            SweepInput in;
+            if (m_volume) {
+                in = m_volume->input(camera, planes, passes[n], tables, opaque, weights, field);
+            } else { // nothing to do, but where rays lie has to be known
+                tables.giveTo(in);
+                setSweepRays(in, camera, passes[n], m_block.whole, SweepCare::Large);
+            }
+            const auto layers = sweepLayers(in);
+            for (std::size_t l = 0; l < layers.size(); ++l)
+                sweepLayer(in, passes[n], layers[l], order, sums,
+                           job.part(n * layers.size() + l, passes.size() * layers.size()));
+        }
+        m_ranks.sum(sums);
+        return sums;
+    }
+
+    /// Carries rays through the block, asks what the others' blocks leave of their light, and measures the block's
+    /// voxels of the layer.
+    void sweepLayer(const SweepInput& pass, const SweepPass& axes, const SweepLayer& layer,
+                    const std::vector<int>& order, std::vector<double>& sums, const JobControl& job) {
+        const Int3 dims = m_block.whole.dims, whole = axes.permuted(dims);
+        const int lanes = lanesOf(pass.mode);
+        const auto& blocks = m_block.blocks.blocks();
+        const auto rectOf = [&](const SweepBox& window) {
+            SweepInput in = pass;
+            in.window = window;
+            return raysAround(in, layer);
+        };
+        const SweepRect all = rectOf({{0, 0, 0}, {whole.x, whole.y, whole.z}});
+        const SweepBox own = boxOf(m_block.block(), axes, dims);
+        const SweepRect wanted = rectOf(own);
+
+        CarriedDepths carried;
+        if (!isEmpty(own)) {
+            SweepInput in = pass;
+            in.bounded = true;
+            in.reach = ownReach(own, whole);
+            in.endRect = raysThrough(in, layer, in.reach);
+            carried.through = RayDepths(in.endRect, lanes, 0);
+            for (std::size_t b = 0; b < blocks.size(); ++b) {
+                const SweepBox box = boxOf(blocks[b], axes, dims);
+                if (static_cast<int>(b) == m_block.own || isEmpty(box)) continue;
+                const auto entered = common(reachAround(box), in.reach);
+                if (!entered) continue;
+                const SweepRect rays = common(raysThrough(in, layer, *entered), rectOf(box));
+                if (rays.rays() > 0)
+                    carried.handed.push_back({static_cast<int>(b), RayDepths(rays, lanes, kNotHanded)});
+            }
+            std::vector<SweepHandover> handovers;
+            for (HandedDepths& handed : carried.handed)
+                handovers.push_back({reachAround(boxOf(blocks[static_cast<std::size_t>(handed.to)], axes, dims)),
+                                     handed.depths.rect, handed.depths.values.data()});
+            in.handovers = handovers.data();
+            in.handoverCount = static_cast<int>(handovers.size());
+            if (in.endRect.rays() > 0) {
+                in.endDepths = carried.through.values.data();
+                std::vector<double> none(sums.size(), 0.0);
+                m_runner.run(in, sweepPieces(in, layer), none, job.part(0, 2));
+            }
+        }
+        RayDepths before = depthsBefore(m_ranks, order, all, wanted, std::move(carried), lanes);
+        if (wanted.rays() == 0) return;
+        SweepInput in = pass;
+        in.window = own;
+        in.bounded = true;
+        in.reach = reachAround(own);
+        begin(in, layer, before);
+        in.startRect = before.rect;
+        in.startDepths = before.values.data();
+        m_runner.run(in, sweepPieces(in, layer), sums, job.part(1, 2));
+    }
+
+    /// Rays that nobody has handed over come from outside the volume, or never come here.
+    static void begin(const SweepInput& in, const SweepLayer& layer, RayDepths& depths) {
+        for (int row = depths.rect.firstRow; row < depths.rect.endRow; ++row)
+            for (int col = depths.rect.firstCol; col < depths.rect.endCol; ++col) {
+                float* ray = depths.values.data() + depths.rect.at(col, row, depths.lanes);
+                if (ray[0] >= 0) continue;
+                const float depth = passes(in, layer, col, row, in.reach) ? 0 : kUnknownDepth;
+                for (int lane = 0; lane < depths.lanes; ++lane) ray[lane] = depth;
+            }
+    }
+
+    Communicator& m_ranks;
+    const BlockVolume& m_block;
+    std::optional<SweepVolume> m_volume; ///< empty where the rank has no block
+    SweepCodes m_codes;
+    SweepRunner m_runner;
+};
+
+} // namespace
+
+std::unique_ptr<VisibilityEngine> makeRankEngine(Communicator& ranks, const BlockVolume& block) {
+    return std::make_unique<RankEngine>(ranks, block);
+}
+
+} // namespace pellucid

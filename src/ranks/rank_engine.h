@@ -1,0 +1,17 @@
+// Visibility of a volume whose blocks lie on many ranks (docs/method.md, "Blocks of a volume").
+#pragma once
+
+#include <memory>
+
+#include "ranks/block_volume.h"
+#include "ranks/communicator.h"
+#include "render/visibility.h"
+
+namespace pellucid {
+
+/// The engine of a rank. All its calls are collective, with equal arguments, and give the same sums on all ranks: the
+/// same bits for the same blocks, whatever the number of threads. Weights and fields have the shape of what is stored;
+/// of a field the block itself is right, the ghosts around it are 0. `ranks` and `block` outlive it.
+std::unique_ptr<VisibilityEngine> makeRankEngine(Communicator& ranks, const BlockVolume& block);
+
+} // namespace pellucid
