@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What is checked besides the tests: scripts/check.sh [--by SECONDS] [--end SECONDS] [CHECK…], all without a name.
 #   format    every C++ file is as clang-format leaves it
+#   mpi       pellucid-mpi builds, and its ranks measure what one process measures
 #   headless  the command line builds alone and needs neither Qt nor OpenGL to start
 #   headers   damaged headers of volume files, 2 000 of each format, are read or refused in words
 #   dev       everything builds with assertions and with warnings as errors
@@ -13,7 +14,7 @@
 # failure, and both are named. Exit status 1 where a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all=(format headless headers dev asan tsan zink tidy)
+all=(format mpi headless headers dev asan tsan zink tidy)
 
 # Installs the packages of the commands that are missing: need COMMAND PACKAGE …
 need() {
@@ -30,6 +31,13 @@ on_display() { xvfb-run -a -s "-screen 0 1600x1000x24" "$@"; }
 check_format() {
     need clang-format clang-format
     git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
+}
+
+check_mpi() {
+    scripts/setup.sh --mpi
+    cmake --preset release -DPELLUCID_MPI=ON >/dev/null
+    cmake --build --preset release --target pellucid-cli pellucid-mpi test_mpi
+    ctest --preset release -L '^mpi$'
 }
 
 check_headless() {

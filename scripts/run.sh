@@ -34,11 +34,14 @@ echo "No display: the same job without a window, on $volume"
 } >"$out/report.txt"
 features=$("$cli" measure "$volume" --json | grep -o '"vws":' | wc -l)
 target=$(seq -s, 1 "$features") # the innermost feature is to be seen most
-"$cli" optimize "$volume" --target "$target" --out-tf "$out/optimized.tf.json" >>"$out/report.txt"
-"$cli" render "$volume" --tf "$out/optimized.tf.json" --out "$out/after.png" --size 640x640
+"$cli" optimize "$volume" --target "$target" --out-tf "$out/optimized.tf.json" --out-camera "$out/camera.json" \
+    >>"$out/report.txt"
+# From where the others look: a transfer function that is named is shown from the same place for all volumes.
+optimized=(--tf "$out/optimized.tf.json" --camera "$out/camera.json")
+"$cli" render "$volume" "${optimized[@]}" --out "$out/after.png" --size 640x640
 {
     echo
     echo "## After"
-    "$cli" measure "$volume" --tf "$out/optimized.tf.json"
+    "$cli" measure "$volume" "${optimized[@]}"
 } >>"$out/report.txt"
-echo "Written: $out/before.png, $out/after.png, $out/optimized.tf.json, $out/report.txt"
+echo "Written: $out/before.png, $out/after.png, $out/optimized.tf.json, $out/camera.json, $out/report.txt"

@@ -1,7 +1,12 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Pellucid is built, run and tested with. Needs root or sudo for that; does nothing
-# when all are there. Packages named as arguments are installed, too.
+# when all are there. Packages named as arguments are installed, too; --mpi stands for those of pellucid-mpi.
 set -euo pipefail
+
+more=()
+for word in "$@"; do
+    if [ "$word" = --mpi ]; then more+=(libopenmpi-dev openmpi-bin); else more+=("$word"); fi
+done
 
 packages=(
     # the build
@@ -15,7 +20,7 @@ packages=(
     qt6-base-dev qt6-svg-dev libqt6opengl6-dev libqt6openglwidgets6
     # the tests: Catch2, a display without a screen, a font for its windows, scripts
     catch2 xvfb xauth fonts-dejavu-core python3 python3-numpy
-    "$@"
+    "${more[@]}"
 )
 
 if [ "$(dpkg-query -W -f '${db:Status-Status}\n' "${packages[@]}" 2>/dev/null | grep -c '^installed$')" -eq "${#packages[@]}" ]; then

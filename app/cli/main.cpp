@@ -1,210 +1,14 @@
-// pellucid-cli: everything without a display. Parses, dispatches, and turns what happens into the exit status:
-// 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.
+// pellucid-cli: everything without a display.
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
-#include <filesystem>
 #include <iterator>
-#include <new>
-#include <optional>
-#include <sstream>
-#include <stdexcept>
 
-#include "base/memory.h"
-#include "base/parallel.h"
-#include "base/text.h"
-#include "command_line.h"
-#include "commands.h"
-#include "interrupt.h"
-#include "output_files.h"
-#include "parse.h"
+#include "program.h"
 
 namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kProgram = "pellucid-cli";
-
-/// The options that every command has.
-struct CommonOptions {
-    bool json = false;
-    bool progress = false;
-    int threads = 0; ///< 0: all that the machine has
-    std::optional<double> memoryGiB;
-};
-
-void addCommonOptions(CLI::App& app, CommonOptions& common) {
-    const char* const group = "General";
-    app.add_flag("--json", common.json, "print one JSON object")->group(group);
-    app.add_flag("--progress", common.progress, "show progress on stderr even if that is not a terminal")->group(group);
-    addValue(app, "--threads", "N", common.threads, wholeFrom(1, 1024), "threads to use (default: all cores)", group);
-    addValue(
-        app, "--memory", "GIB", common.memoryGiB, realAbove(0, 1e6),
-        "memory that the program may use, in GiB; what needs more is refused before it starts (default: what is free)",
-        group);
-    app.get_help_ptr()->group(group);
-}
-
-/// Column of the descriptions in --help, and where its lines end.
-constexpr std::size_t kHelpIndent = 34, kHelpWidth = 100;
-
-/// Help as CLI11 lays it out, with long descriptions broken between words and without double blank lines.
-std::string wrapped(const std::string& help) {
-    std::string result, line;
-    std::istringstream lines(help);
-    while (std::getline(lines, line)) {
-        if (line.empty() && result.ends_with("\n\n")) continue;
-        for (std::size_t end; line.size() > kHelpWidth && (end = line.rfind(' ', kHelpWidth)) > kHelpIndent;) {
-            result += line.substr(0, end) + "\n";
-            line = std::string(kHelpIndent, ' ') + line.substr(end + 1);
-        }
-        result += line + "\n";
-    }
-    return result;
-}
-
-struct Failure {
-    int status = 1;
-    std::string message;
-};
-
-/// `--clip x:0:.5 y:0:.5` → `--clip x:0:.5 --clip y:0:.5`. A list ends where something else begins, so VOLUME may
-/// follow it.
-std::vector<std::string> withListsExpanded(const std::vector<std::string>& arguments) {
-    std::vector<std::string> expanded;
-    std::string list; // the option whose list is going on
-    for (const std::string& argument : arguments) {
-        const bool belongs =
-            (list == "--clip" && looksLikeClip(argument)) || (list == "--fix" && looksLikeNumber(argument));
-        if (belongs && expanded.back() != list) expanded.push_back(list);
-        expanded.push_back(argument);
-        if (!belongs) list = argument == "--clip" || argument == "--fix" ? argument : std::string();
-    }
-    return expanded;
-}
-
-/// The program, then the commands that were recognized, the last of them the one that is meant.
-std::vector<const CLI::App*> parsedApps(const CLI::App& program) {
-    std::vector<const CLI::App*> apps{&program};
-    for (auto parsed = program.get_subcommands(); !parsed.empty(); parsed = apps.back()->get_subcommands())
-        apps.push_back(parsed.front());
-    return apps;
-}
-
-/// "pellucid-cli measure", "pellucid-cli study run", or the program alone where no command was recognized.
-std::string place(const CLI::App& program) { return joined(parsedApps(program), " ", &CLI::App::get_name); }
-
-std::string problem(const CLI::App& program, const CLI::ParseError& error) {
-    const CLI::App& app = *parsedApps(program).back();
-    const bool hasCommands = !app.get_subcommands([](const CLI::App*) { return true; }).empty();
-    const auto unknown = program.remaining(true);
-    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
-        const std::string& first = unknown.front();
-        if (first.starts_with("-")) return "unknown option '" + first + "'";
-        return (hasCommands ? "unknown command '" : "unexpected argument '") + first + "'";
-    }
-    if (hasCommands && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-        if (unknown.empty()) return "no command is given";
-        return (unknown.front().starts_with("-") ? "unknown option '" : "unknown command '") + unknown.front() + "'";
-    }
-    std::string text = error.what();
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && text.starts_with("--"))
-        return text.substr(0, text.find(':')) +
-               (text.find("At Most") != std::string::npos ? " is given more than once" : " has no value");
-    const auto isLower = [](char c) { return std::islower(static_cast<unsigned char>(c)) != 0; };
-    if (text.size() > 1 && isLower(text[1])) // not NAME
-        text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
-    return text;
-}
-
-/// "WHAT, WHERE, WHAT TO DO": where a setting would help, by the name of its option.
-std::string lineOf(const Error& e) {
-    const auto advice = [&]() -> std::string {
-        const std::string said = e.whatToDo().empty() ? "" : e.whatToDo() + ", or ";
-        switch (e.remedy()) {
-        case Remedy::AllowMoreMemory:
-            return "allow more with --memory, or use a smaller volume";
-        case Remedy::GiveRawLayout:
-            return said + "give --raw NX,NY,NZ,TYPE for headerless data";
-        case Remedy::CorrectRawLayout:
-            return "correct --raw or --skip";
-        case Remedy::GiveSpacing:
-            return said + "give --spacing SX,SY,SZ";
-        case Remedy::NoComponent:
-            return "leave out --component";
-        case Remedy::OtherEngine:
-            return said + "use --engine cpu";
-        case Remedy::AsSaid:
-            break;
-        }
-        return e.whatToDo();
-    };
-    return Error(e.problem(), e.where(), advice()).what();
-}
-
-Failure failureOf(const std::exception_ptr& thrown, const std::string& where) {
-    try {
-        std::rethrow_exception(thrown);
-    } catch (const UsageError& e) {
-        return {2, lineOf(e)};
-    } catch (const Error& e) {
-        return {1, lineOf(e)};
-    } catch (const std::bad_alloc&) {
-        return {1, "out of memory, " + where + ", use a smaller volume, --size or machine with more"};
-    } catch (const std::length_error&) {
-        return {1, "out of memory, " + where + ", use a smaller volume, --size or machine with more"};
-    } catch (const std::filesystem::filesystem_error& e) {
-        return {1, e.code().message() + ", " + e.path1().string() + ", check permissions and space"};
-    } catch (const std::exception& e) {
-        return {1, std::string("unexpected failure (") + e.what() + "), " + where +
-                       ", please report it with the command line"};
-    } catch (...) {
-        return {1, "unexpected failure, " + where + ", please report it with the command line"};
-    }
-}
-
-int fail(const Failure& failure) {
-    std::fprintf(stderr, "%s: error: %s\n", kProgram, oneLine(failure.message).c_str());
-    return failure.status;
-}
-
-/// The status of a stopped command. Where both a signal and an error came, the signal is what the user did.
-int stoppedStatus() { return interruptStatus() != 0 ? interruptStatus() : 130; }
-
-int runCommand(const CLI::App& program, const Command& command, const CommonOptions& common) {
-    Progress progress(Progress::styleFor(common.progress));
-    const std::string where = place(program);
-    try {
-        if (common.threads > 0) setThreadCount(common.threads);
-        if (common.memoryGiB) setMemoryLimit(static_cast<std::uint64_t>(*common.memoryGiB * (1u << 30)));
-        const Answer answer = command.run(progress);
-        progress.finish();
-        if (interruptStatus() != 0) return stoppedStatus();
-        writeAnswer(common.json ? jsonText(answer.json) : answer.text);
-        if (answer.failure) return fail({1, lineOf(*answer.failure)});
-        for (const std::string& notice : answer.notices)
-            std::fprintf(stderr, "%s: note: %s\n", kProgram, oneLine(notice).c_str());
-        return 0;
-    } catch (const Cancelled&) {
-        progress.finish();
-        return stoppedStatus();
-    } catch (...) {
-        progress.finish();
-        if (interruptStatus() != 0) return stoppedStatus();
-        return fail(failureOf(std::current_exception(), where));
-    }
-}
-
-int run(const std::vector<std::string>& arguments) {
-    keepCommandLine(arguments);
-    watchCallFiles();
-    CLI::App program("Pellucid on the command line: measures and shapes what a volume rendering shows.", kProgram);
-    program.set_version_flag("--version", std::string(kProgram) + " " + PELLUCID_VERSION, "print the version");
-    program.require_subcommand(1);
-    program.get_formatter()->column_width(kHelpIndent);
-    program.footer("Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.\n"
-                   "`pellucid-cli COMMAND --help` lists a command's options.");
-
+std::vector<Command> addCommands(CLI::App& program) {
     std::vector<Command> commands{
         addInfo(program),    addSamples(program),     addPresets(program), addGenerate(program),  addRender(program),
         addMeasure(program), addFields(program),      addRefine(program),  addOptimize(program),  addSequence(program),
@@ -212,29 +16,7 @@ int run(const std::vector<std::string>& arguments) {
         addViews(program),   addSaliencyMap(program), addCompare(program), addReproduce(program), addBench(program),
         addFilm(program)};
     std::ranges::move(addStudy(program), std::back_inserter(commands));
-    CommonOptions common;
-    for (const Command& command : commands) addCommonOptions(*command.app, common);
-
-    try {
-        std::vector<std::string> reversed = withListsExpanded(arguments);
-        std::reverse(reversed.begin(), reversed.end()); // the order in which CLI11 takes them
-        program.parse(std::move(reversed));
-    } catch (const CLI::ParseError& e) {
-        // Help and version are thrown too; they are answers.
-        if (e.get_exit_code() == 0) {
-            if (dynamic_cast<const CLI::CallForVersion*>(&e) != nullptr)
-                writeAnswer(std::string(e.what()) + "\n");
-            else if (const auto parsed = program.get_subcommands(); !parsed.empty())
-                writeAnswer(wrapped(parsed.front()->help(kProgram)));
-            else
-                writeAnswer(wrapped(program.help()));
-            return 0;
-        }
-        return fail({2, problem(program, e) + ", " + place(program) + ", see " + place(program) + " --help"});
-    }
-    const auto chosen =
-        std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
-    return runCommand(program, *chosen, common);
+    return commands;
 }
 
 } // namespace
@@ -243,12 +25,9 @@ int run(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
     namespace cli = pellucid::cli;
-    cli::installInterrupt();
-    // A file that must not grow further (`ulimit -f`) is told like a full disk, instead of ending the process.
-    std::signal(SIGXFSZ, SIG_IGN);
-    try {
-        return cli::run({argv + 1, argv + argc});
-    } catch (...) {
-        return cli::fail(cli::failureOf(std::current_exception(), cli::kProgram));
-    }
+    cli::beginProgram();
+    const cli::Program program{"pellucid-cli",
+                               "Pellucid on the command line: measures and shapes what a volume rendering shows.",
+                               cli::addCommands};
+    return cli::tell(program, cli::run(program, {argv + 1, argv + argc}));
 }

@@ -38,6 +38,10 @@ void writeAtomically(const std::string& path, const std::function<void(OutputFil
 void writeBytesAtomically(const std::string& path, std::span<const unsigned char> bytes);
 void writeTextAtomically(const std::string& path, std::string_view text);
 
+/// Of several processes that do the same one keeps what they write; the others make sure that it could be written, and
+/// throw their bytes away. At first a process keeps it.
+void keepWrittenFiles(bool keep);
+
 /// Where a link leads, so that it stays a link; what it leads to need not exist.
 std::filesystem::path behindLinks(std::filesystem::path path);
 

@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "engines/renderer_probe.h"
+#include "ranks/process_ranks.h"
+#include "ranks/rank_engine.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/gl/gl_engines.h"
 
@@ -40,6 +42,11 @@ std::unique_ptr<T> gpuElseCpu(MakeGl makeGl, MakeCpu makeCpu) {
 
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality) {
+    if (Communicator* ranks = ranksOfProcess()) {
+        if (choice != EngineChoice::Auto && choice != EngineChoice::Cpu)
+            throw UsageError("ranks measure by the cpu engine", "--engine", "leave it out, or use pellucid-cli");
+        return makeEngineOnRanks(*ranks, std::move(volume), quality);
+    }
     if (choice == EngineChoice::Auto)
         return gpuElseCpu<VisibilityEngine>([&] { return makeGlEngine(volume, quality); },
                                             [&] { return makeCpuEngine(volume, quality); });

@@ -25,23 +25,29 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
     m_stepInD0 = stepAlongRays(volume.geometry());
     const double step = m_stepInD0 * volume.geometry().d0();
 
-    std::vector<std::vector<std::uint16_t>> rows(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
-    forEachRay(volume, view, pixels, step, 1, job,
-               [&](std::size_t pixel, const PixelRay& r, const auto& sampler, const auto&) {
-                   for (double t = r.first; t < r.exit; t += step)
-                       if (const int bin = sampler.at(r.ray.origin + t * r.ray.direction);
-                           bin >= 0 && features.keeps(bin))
-                           rows[pixel].push_back(static_cast<std::uint16_t>(bin));
-               });
+    struct Step {
+        std::uint16_t step, bin;
+    };
+    std::vector<std::vector<Step>> rows(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
+    forEachRay(volume, view, pixels, step, 1, job, [&](std::size_t pixel, const PixelRay& r, const auto& sampler) {
+        std::uint16_t n = 0;
+        for (double t = r.first; t < r.exit; t += step, ++n) {
+            const Vec3 at = r.ray.origin + t * r.ray.direction;
+            if (!sampler.answersFor(sampler.nearest(at))) continue;
+            if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
+                rows[pixel].push_back({n, static_cast<std::uint16_t>(bin)});
+        }
+    });
+    shareRays(volume, rows);
 
     m_begins.push_back(0);
-    for (const auto& bins : rows) {
+    for (const std::vector<Step>& row : rows) {
         std::vector<int> steps(m_features + 1, 0);
-        for (const std::uint16_t bin : bins) ++steps[static_cast<std::size_t>(m_slotOfBin[bin])];
+        for (const Step& met : row) ++steps[static_cast<std::size_t>(m_slotOfBin[met.bin])];
         steps.pop_back(); // of what is in no feature
         const auto met = [&](int n) { return n * m_stepInD0 >= kMeets; };
         if (std::ranges::none_of(steps, met)) continue;
-        m_bins.insert(m_bins.end(), bins.begin(), bins.end());
+        for (const Step& one : row) m_bins.push_back(one.bin);
         m_begins.push_back(static_cast<std::uint32_t>(m_bins.size()));
         for (const int n : steps) m_met.push_back(met(n));
     }

@@ -66,12 +66,43 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
     const Mat3 worldFromIndex = geometry.worldFromIndex();
     const Int3 dims = volume.dims();
 
+    // First what each step of a ray meets, wherever its voxels are.
+    constexpr std::uint16_t kNothing = 0xffff;
+    struct Step {
+        std::uint32_t weights;         ///< of the voxel that the step lies in
+        std::uint16_t step;            ///< its number
+        std::uint16_t bin, binOfVoxel; ///< of the intensity there, and of the voxel's; kNothing: cannot be seen
+    };
+    const auto pixels = static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays);
+    std::vector<std::vector<Step>> met(pixels);
+    forEachRay(volume, View(*camera, view.clipping), rays, step, 2, job,
+               [&](std::size_t pixel, const PixelRay& r, const auto& sampler) {
+                   std::uint16_t n = 0;
+                   for (double t = r.first; t < r.exit; t += step, ++n) {
+                       const Vec3 at = r.ray.origin + t * r.ray.direction;
+                       const Int3 voxel = sampler.nearest(at);
+                       if (!sampler.answersFor(voxel)) continue;
+                       Step here{0, n, kNothing, kNothing};
+                       if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
+                           here.bin = static_cast<std::uint16_t>(bin);
+                       const std::size_t index = sampler.indexOf(voxel);
+                       if (const double s = sampler.intensityOf(index);
+                           !std::isnan(s) && features.keeps(binOfIntensity(s))) {
+                           here.binOfVoxel = static_cast<std::uint16_t>(binOfIntensity(s));
+                           here.weights = weights.units(index);
+                       }
+                       if (here.bin != kNothing || here.binOfVoxel != kNothing) met[pixel].push_back(here);
+                   }
+               });
+    shareRays(volume, met);
+
+    // Then how much of the light reaches each voxel.
     struct OfRay {
         std::vector<std::uint16_t> bins;
         std::vector<Met> voxels;
     };
-    std::vector<OfRay> all(static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
-    const auto follow = [&](std::size_t pixel, const PixelRay& r, const auto& sampler, const auto& values) {
+    std::vector<OfRay> all(pixels);
+    const auto follow = [&](std::size_t pixel, const PixelRay& r) {
         struct Point {
             double from; ///< t at which a voxel's light is taken
             Met met;
@@ -82,26 +113,26 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
         points.clear();
         OfRay& here = all[pixel];
         const double slant = glm::dot(r.direction, forward);
-        for (double t = r.first; t < r.exit; t += step) {
-            const Vec3 at = r.ray.origin + t * r.ray.direction;
-            if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin)) {
-                here.bins.push_back(static_cast<std::uint16_t>(bin));
+        auto next = met[pixel].begin();
+        std::uint16_t n = 0;
+        for (double t = r.first; t < r.exit && next != met[pixel].end(); t += step, ++n) {
+            if (next->step != n) continue;
+            const Step& found = *next++;
+            if (found.bin != kNothing) {
+                here.bins.push_back(found.bin);
                 begins.push_back(t - step / 2);
             }
+            if (found.binOfVoxel == kNothing) continue;
+            const Vec3 at = r.ray.origin + t * r.ray.direction;
             const Int3 voxel = glm::clamp(Int3(glm::round(at)), Int3(0), dims - 1);
-            const std::size_t index = voxelIndex(dims, voxel.x, voxel.y, voxel.z);
-            const double s = volume.intensityOfValue(static_cast<double>(values[index]));
-            if (std::isnan(s) || !features.keeps(binOfIntensity(s))) continue;
             // As far along the ray as the voxel's centre, less the d0/2 in front of it.
             const double center = t + glm::dot(worldFromIndex * (Vec3(voxel) - at), r.direction);
             const double measure = perspective ? t * t * slant * slant * slant : 1;
-            points.push_back({center - d0 / 2,
-                              {weights.units(index), static_cast<float>(measure),
-                               static_cast<std::uint16_t>(binOfIntensity(s)), 0, 0}});
+            points.push_back({center - d0 / 2, {found.weights, static_cast<float>(measure), found.binOfVoxel, 0, 0}});
         }
         for (Point& p : points) {
-            const auto next = std::ranges::upper_bound(begins, p.from);
-            auto behind = static_cast<std::size_t>(next - begins.begin());
+            const auto after = std::ranges::upper_bound(begins, p.from);
+            auto behind = static_cast<std::size_t>(after - begins.begin());
             std::size_t quarters = 0;
             if (behind > 0) { // the last step that has begun may not have ended
                 const double part = (p.from - begins[behind - 1]) / step;
@@ -117,7 +148,7 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
         std::ranges::stable_sort(points, {}, [](const Point& p) { return p.met.behind; });
         for (const Point& p : points) here.voxels.push_back(p.met);
     };
-    forEachRay(volume, View(*camera, view.clipping), rays, step, 2, job, follow);
+    forEachRayOf(geometry, View(*camera, view.clipping), rays, step, 2, job, follow);
     for (const OfRay& ray : all) {
         if (ray.voxels.empty()) continue;
         m_bins.insert(m_bins.end(), ray.bins.begin(), ray.bins.end());

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "ranks/depth_exchange.h"
+#include "ranks/rank_volume.h"
+#include "render/cpu/cpu_engine.h"
 #include "render/cpu/sweep_run.h"
 #include "render/cpu/sweep_volume.h"
 
@@ -69,8 +71,9 @@ SweepRect common(const SweepRect& a, const SweepRect& b) {
 
 class RankEngine final : public VisibilityEngine {
 public:
-    RankEngine(Communicator& ranks, const BlockVolume& block)
-        : m_ranks(ranks), m_block(block), m_runner(sweepKernels().front()) {
+    RankEngine(Communicator& ranks, BlockVolume own)
+        : m_ranks(ranks), m_block(std::move(own)), m_runner(sweepKernels().front()) {
+        const BlockVolume& block = m_block;
         PELLUCID_CHECK(static_cast<int>(block.blocks.blocks().size()) == ranks.size());
         if (!block.isEmpty()) m_volume.emplace(block.stored, block.whole, block.region.lo);
         // Tables depend on how many codes there are: where a rank has none it takes another's.
@@ -207,7 +210,7 @@ private:
     }
 
     Communicator& m_ranks;
-    const BlockVolume& m_block;
+    BlockVolume m_block;
     std::optional<SweepVolume> m_volume; ///< empty where the rank has no block
     SweepCodes m_codes;
     SweepRunner m_runner;
@@ -215,8 +218,38 @@ private:
 
 } // namespace
 
-std::unique_ptr<VisibilityEngine> makeRankEngine(Communicator& ranks, const BlockVolume& block) {
-    return std::make_unique<RankEngine>(ranks, block);
+std::unique_ptr<VisibilityEngine> makeRankEngine(Communicator& ranks, BlockVolume block) {
+    return std::make_unique<RankEngine>(ranks, std::move(block));
+}
+
+namespace {
+
+/// Every size()-th piece of a sweep is this rank's.
+PieceShare shareOf(Communicator& ranks) {
+    const auto part = static_cast<std::size_t>(ranks.rank()), parts = static_cast<std::size_t>(ranks.size());
+    return {part, parts, [&ranks, part, parts](std::vector<std::vector<double>>& sums, std::size_t size) {
+                std::vector<double> mine;
+                for (std::size_t i = part; i < sums.size(); i += parts)
+                    mine.insert(mine.end(), sums[i].begin(), sums[i].end());
+                const auto all = ranks.gather(std::as_bytes(std::span(mine)));
+                const std::size_t bytes = size * sizeof(double);
+                for (std::size_t i = 0; i < sums.size(); ++i) {
+                    sums[i].resize(size);
+                    std::memcpy(sums[i].data(), all[i % parts].data() + i / parts * bytes, bytes);
+                }
+            }};
+}
+
+} // namespace
+
+std::unique_ptr<VisibilityEngine> makeEngineOnRanks(Communicator& ranks, std::shared_ptr<const Volume> volume,
+                                                    Quality quality) {
+    const auto* blocks = dynamic_cast<const RankVoxels*>(volume->elsewhere());
+    if (blocks == nullptr) return makeCpuEngine(std::move(volume), quality, sweepKernels().front(), shareOf(ranks));
+    if (quality == Quality::High)
+        throw Error("quality high follows lines through the whole volume, whose blocks lie on several ranks",
+                    "--quality", "leave it out, or use pellucid-cli");
+    return makeRankEngine(blocks->ranks(), blocks->blockOf(*volume));
 }
 
 } // namespace pellucid

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "volume/fetched_values.h"
 #include "volume/noise.h"
-#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -53,11 +53,13 @@ Grid<std::uint8_t> drawnCells(const Volume& volume, const TransferFunction& tf, 
     const double least = leastOpacity(volume.geometry());
     // Ten times as deep: peaks of which `least` is a tenth.
     const TfSampler sampler(withEvenPeaks(tf, volume.geometry(), 1 - std::pow(1 - 0.05, 10), 0.5));
-    withSamples(volume, [&](const auto& samples) {
+    const auto wanted = [&](const auto& ask) {
+        for (std::size_t i = 0; i < drawn.size(); ++i) ask(grid.voxelIn(voxelAt(grid.cells, i)));
+    };
+    withValues(volume, wanted, [&](const auto& values) {
         forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
             const Int3 v = grid.voxelIn(cell);
-            const double s =
-                volume.intensityOfValue(static_cast<double>(samples[voxelIndex(volume.dims(), v.x, v.y, v.z)]));
+            const double s = volume.intensityOfValue(values(voxelIndex(volume.dims(), v.x, v.y, v.z)));
             drawn[at] = !std::isnan(s) && sampler.opacity(s) >= least && keeps(planes, Vec3(v));
         });
     });

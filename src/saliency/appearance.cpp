@@ -261,16 +261,21 @@ TransferFunction colorsOf(const TransferFunction& tf) {
     return colors;
 }
 
-WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options) {
-    const double w = std::max(options.w1, options.w2);
-    return {dims, w, 1.34 * w, voxelCount(dims) >= kLeanVoxels ? WeightForm::Compact : WeightForm::Exact};
+WeightForm weightFormOf(const Int3& dims) {
+    return voxelCount(dims) >= kLeanVoxels ? WeightForm::Compact : WeightForm::Exact;
 }
 
-bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options) {
+WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options, std::optional<WeightForm> form) {
+    const double w = std::max(options.w1, options.w2);
+    return {dims, w, 1.34 * w, form.value_or(weightFormOf(dims))};
+}
+
+bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options,
+                      std::optional<WeightForm> form) {
     const WeightFields scales = emptyWeightFields(Int3(0), options);
     if (fields.dims() == dims && fields.scale(0) == scales.scale(0) && fields.scale(1) == scales.scale(1)) return true;
     fields = {}; // before the new ones, so that both never need room at once
-    fields = emptyWeightFields(dims, options);
+    fields = emptyWeightFields(dims, options, form);
     return false;
 }
 

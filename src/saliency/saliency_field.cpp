@@ -2,6 +2,7 @@
 // slices; what lies within one colour, as half of a scan does, is |w1 − w2|·O and is not computed.
 #include "saliency/saliency_field.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -127,15 +128,44 @@ WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, co
     return fields;
 }
 
-void updateSaliencyFields(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
+Int3 saliencyReach(const Geometry& geometry, const SaliencyOptions& options) {
+    const BallPair balls = ballsOf(geometry, options);
+    return {balls[1].reach(0), balls[1].reach(1), balls[1].reach(2)};
+}
+
+namespace {
+
+/// Of a volume of which this process has a part: that part. Throws Error where saliency reaches further.
+const Volume* partHere(const Volume& whole, const SaliencyOptions& options) {
+    if (whole.elsewhere() == nullptr) return &whole;
+    const VoxelRegion own = whole.elsewhere()->own(), stored = whole.elsewhere()->stored();
+    const Int3 reach = saliencyReach(whole.geometry(), options);
+    for (int a = 0; a < 3 && whole.here(); ++a)
+        if (stored.lo[a] > std::max(0, own.lo[a] - reach[a]) ||
+            stored.hi[a] < std::min(whole.dims()[a], own.hi[a] + reach[a]))
+            throw Error("saliency reaches further than the voxels around a block of the volume", "sigma",
+                        "give a smaller one");
+    return whole.here().get();
+}
+
+} // namespace
+
+void updateSaliencyFields(WeightFields& fields, const Volume& whole, const TransferFunction& tf,
                           const SaliencyOptions& options, const JobControl& job, const VoxelColors* colors) {
     validate(options);
     job.throwIfStopped();
+    const WeightForm form = weightFormOf(whole.dims());
+    const Volume* const part = partHere(whole, options);
+    if (part == nullptr) {
+        fields = emptyWeightFields(Int3(0), options, form);
+        return;
+    }
+    const Volume& volume = *part;
     const BallPair balls = ballsOf(volume.geometry(), options);
     const Tiling tiling(volume.dims(), balls);
     const BallPlan plan(balls, tiling.stride());
     const AppearanceReader reader(volume, tf, options.background, colors);
-    const bool used = keepWeightFields(fields, volume.dims(), options);
+    const bool used = keepWeightFields(fields, volume.dims(), options, form);
     tiling.forEach(job, [&](const Tile& tile) { TileSweep(balls, plan, reader, options, tile, fields, used).run(); });
 }
 

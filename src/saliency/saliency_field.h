@@ -1,6 +1,8 @@
 // Centre against surround, per voxel (docs/method.md, "Saliency"; eq. 4.6–4.8).
 #pragma once
 
+#include <optional>
+
 #include "base/job.h"
 #include "base/setting.h"
 #include "saliency/weight_fields.h"
@@ -30,15 +32,21 @@ std::span<const Setting> settingsOf<SaliencyOptions>();
 
 /// All 0, with room for the largest weights possible: L ≤ max(w1, w2)·O (4.8), and no sRGB colour has O_b above 1 or
 /// O_s above 1.34. These bounds do not depend on the colours at hand, so that greys, whose chroma is 0 but for
-/// rounding, get weights of exactly 0. Compact from kLeanVoxels on.
-WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options);
+/// rounding, get weights of exactly 0. `form`: empty: weightFormOf(dims).
+WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options, std::optional<WeightForm> form = {});
+WeightForm weightFormOf(const Int3& dims); ///< of a volume: compact from kLeanVoxels on
 /// Makes `fields` such as emptyWeightFields() returns, but keeps memory and values that fit: true where it does.
-bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options);
+bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options,
+                      std::optional<WeightForm> form = {});
+/// How many voxels around a voxel its saliency depends on, along each axis.
+Int3 saliencyReach(const Geometry& geometry, const SaliencyOptions& options);
 
 /// The part of `tf` that saliency depends on: two with equal parts have the same fields. Opacities and names are gone,
 /// and points between which no colour bends, such as those that scaling a feature inserts.
 TransferFunction colorsOf(const TransferFunction& tf);
 
+/// Of a volume on several ranks: of the voxels that are here, right of those that this rank answers for. Throws Error
+/// where too few voxels around these are here.
 /// Depends on the colours and features of `tf`, never on its opacities. With `colors`, voxels in features have those in
 /// place of the transfer function's. Throws Error for options out of range.
 WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options = {},

@@ -30,7 +30,7 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
             m_weights = {};
         }
         if (m_raysOf.volume != input.volume) releaseRays();
-        requireMemory(useUnder(settings), input.volume->title, input.volume->dims(), input.volume->sampleType());
+        requireMemory(useUnder(settings), input.volume->title, input.volume->dimsHere(), input.volume->sampleType());
         m_engine = settings.profile == Profile::Published ? makePublishedEngine(input.volume)
                                                           : makeEngine(settings.engine, input.volume, settings.quality);
         m_engineOf = wanted;
@@ -136,7 +136,7 @@ Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, c
         const bool swept = dependsOnView(kind), weighted = kind != FieldKind::Visibility;
         VisibilityEngine* const e = swept ? &engine(input) : nullptr;
         const bool all = weighted && !haveWeights(input);
-        requireMemory(toDrawField(all), volume.title, volume.dims(), volume.sampleType());
+        requireMemory(toDrawField(all), volume.title, volume.dimsHere(), volume.sampleType());
         // Saliency, sweep and what is made of them are about as long.
         std::size_t done = 0;
         const std::size_t parts = (all ? 1u : 0u) + (swept ? 1u : 0u) + 1u;

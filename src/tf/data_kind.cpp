@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <set>
+#include <span>
 
 #include "base/parallel.h"
 #include "volume/robust_range.h"
@@ -42,6 +44,22 @@ Values fewValues(const Volume& data, const VoxelSurvey& survey, const JobControl
     constexpr std::size_t kMostVoxels = std::size_t{1} << 26, kPieces = 64;
     const std::size_t stride = (data.size() + kMostVoxels - 1) / kMostVoxels;
     std::vector<Values> found(kPieces);
+    if (data.elsewhere() != nullptr) {
+        // Of those of each rank, which are as many as there may be at most, or too many.
+        Values own;
+        if (data.here())
+            withSamples(*data.here(), [&](const auto& samples) {
+                own = valuesOf(samples.data(), 0, data.here()->size(), stride, data.missing());
+            });
+        std::vector<double> mine(own.begin(), own.end());
+        for (const auto& bytes : data.elsewhere()->gather(std::as_bytes(std::span(mine))))
+            for (std::size_t i = 0; i + sizeof(double) <= bytes.size(); i += sizeof(double)) {
+                double value = 0;
+                std::memcpy(&value, bytes.data() + i, sizeof value);
+                values.insert(value);
+            }
+        return values.size() <= kMostValues ? values : Values{};
+    }
     withSamples(data, [&](const auto& samples) {
         parallelFor(kPieces, [&](std::size_t p) {
             job.throwIfStopped();

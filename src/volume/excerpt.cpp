@@ -192,10 +192,66 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl&
     return throughWindowOf(std::move(volume), whole.range());
 }
 
+namespace {
+
+/// Means of a volume on several ranks: each adds what it has of every voxel's sum.
+Samples meansOfBlocks(const Volume& whole, const ExcerptPlan& plan) {
+    const std::size_t count = voxelCount(plan.dims);
+    std::vector<double> found(2 * count, 0.0); // sums, then how many
+    if (const Volume* here = whole.here().get()) {
+        const VoxelRegion own = whole.elsewhere()->own(), stored = whole.elsewhere()->stored();
+        withSamples(*here, [&](const auto& values) {
+            for (int k = own.lo.z; k < own.hi.z; ++k)
+                for (int j = own.lo.y; j < own.hi.y; ++j)
+                    for (int i = own.lo.x; i < own.hi.x; ++i) {
+                        const Int3 at = Int3(i, j, k) - stored.lo, to = Int3(i, j, k) / plan.factors;
+                        const std::size_t from = voxelIndex(here->dims(), at.x, at.y, at.z);
+                        const auto value = static_cast<double>(values[from]);
+                        if (!std::isfinite(value) || (whole.missing() && value == *whole.missing())) continue;
+                        const std::size_t n = voxelIndex(plan.dims, to.x, to.y, to.z);
+                        found[n] += value;
+                        ++found[count + n];
+                    }
+        });
+    }
+    whole.elsewhere()->sum(found);
+    const auto means = [&]<class T>(T) -> Samples {
+        const LayerMeans<T> mean({1, 1}, Int3(1), whole.missing());
+        std::vector<T> values(count);
+        for (std::size_t n = 0; n < count; ++n)
+            values[n] = mean.meanOf(found[n], static_cast<std::uint32_t>(found[count + n]));
+        return values;
+    };
+    switch (whole.sampleType()) {
+    case SampleType::U8:
+        return means(std::uint8_t{});
+    case SampleType::I8:
+        return means(std::int8_t{});
+    case SampleType::U16:
+        return means(std::uint16_t{});
+    case SampleType::I16:
+        return means(std::int16_t{});
+    case SampleType::U32:
+        return means(std::uint32_t{});
+    case SampleType::I32:
+        return means(std::int32_t{});
+    case SampleType::F32:
+        return means(float{});
+    default:
+        return means(double{});
+    }
+}
+
+} // namespace
+
 Volume coarserCopy(const Volume& whole, int factor) {
     ExcerptPlan plan = planOf({Int3(0), whole.dims()}, whole.dims(), factor);
     plan.referenceLength = whole.geometry().d0();
-    return excerptOf(whole, plan);
+    if (whole.elsewhere() == nullptr) return excerptOf(whole, plan);
+    Volume copy(plan.geometryOf(whole.geometry()), meansOfBlocks(whole, plan), whole.missing());
+    copy.title = whole.title;
+    copy.format = whole.format;
+    return throughWindowOf(std::move(copy), whole.range());
 }
 
 VoxelColors coarserColors(const VoxelColors& colors, int factor) {

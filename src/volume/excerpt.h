@@ -51,9 +51,10 @@ public:
     /// Smallest and largest valid value so far; lo > hi before there is one.
     const ValueRange& range() const noexcept { return m_range; }
 
-private:
+    /// Of `count` valid values; missing where there is none.
     T meanOf(double sum, std::uint32_t count) const;
 
+private:
     glm::ivec2 m_size, m_layer;
     Int3 m_factors;
     std::optional<T> m_missing;
@@ -66,7 +67,7 @@ private:
 /// Throws Cancelled.
 Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job = {});
 
-/// The whole volume downsampled by `factor` ≥ 1, with the reference length of `whole`, so that opacities, saliency and
+/// The whole volume, wherever its voxels are, in this process, downsampled by `factor` ≥ 1, with the reference length of `whole`, so that opacities, saliency and
 /// figures mean the same in both.
 Volume coarserCopy(const Volume& whole, int factor);
 /// Colours by voxel on the grid of coarserCopy(): each the mean over `factor` (≥ 1) voxels along each axis, fewer at

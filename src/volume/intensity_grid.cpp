@@ -11,8 +11,7 @@ namespace pellucid {
 
 IntensityCoder::IntensityCoder(const Volume& volume) {
     const ValueRange r = volume.range();
-    const bool integers =
-        withSamples(volume, [](const auto& v) { return std::is_integral_v<std::decay_t<decltype(v[0])>>; });
+    const bool integers = volume.sampleType() != SampleType::F32 && volume.sampleType() != SampleType::F64;
     const double span = r.hi - r.lo;
     const bool wholeEnds = r.lo == std::floor(r.lo) && r.hi == std::floor(r.hi);
     m_exact = integers && wholeEnds && span >= 1 && span <= 65535;
@@ -45,8 +44,8 @@ CodeGrid::CodeGrid(const Int3& dims, ZeroedVector<std::uint8_t> narrow) : m_dims
 }
 
 CodeGrid::CodeGrid(const Int3& dims, SampleArray<std::uint8_t> narrow) : m_dims(dims) {
-    static_assert(kPadding <= MappedFile::kPadding);
-    PELLUCID_CHECK(narrow.size() == size() && narrow.isMapped());
+    static_assert(kPadding <= SampleArray<std::uint8_t>::kPadding);
+    PELLUCID_CHECK(narrow.size() == size() && narrow.isPadded());
     m_narrow = held(std::move(narrow), m_owner);
 }
 
@@ -56,7 +55,7 @@ namespace {
 const SampleArray<std::uint8_t>* asCodes(const Volume& volume) {
     const auto* samples = std::get_if<SampleArray<std::uint8_t>>(&volume.samples());
     const bool asTheyAre = volume.range().lo == 0 && volume.dataRange().hi <= volume.range().hi;
-    return samples != nullptr && samples->isMapped() && asTheyAre ? samples : nullptr;
+    return samples != nullptr && samples->isPadded() && asTheyAre ? samples : nullptr;
 }
 
 constexpr int kInvalid = -1;

@@ -39,7 +39,7 @@ public:
     CodeGrid() = default;
     CodeGrid(const Int3& dims, ZeroedVector<std::uint16_t> wide); ///< kPadding more than voxels
     CodeGrid(const Int3& dims, ZeroedVector<std::uint8_t> narrow);
-    CodeGrid(const Int3& dims, SampleArray<std::uint8_t> narrow); ///< mapped samples, which are codes as they are
+    CodeGrid(const Int3& dims, SampleArray<std::uint8_t> narrow); ///< padded samples, which are codes as they are
 
     const Int3& dims() const noexcept { return m_dims; }
     std::size_t size() const noexcept { return voxelCount(m_dims); }
@@ -75,7 +75,7 @@ enum class CodeWidth {
     Wide,   ///< never
     Narrow  ///< wherever it can be
 };
-/// Narrow codes are value − lo, in the window 0 … maxCode the mapped samples themselves: these take no memory.
+/// Narrow codes are value − lo, in the window 0 … maxCode padded samples themselves: these take no more memory.
 IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width = CodeWidth::BySize);
 
 /// The same, made once for a volume in its window and shared by all who hold it at a time: picture and measure. Made on

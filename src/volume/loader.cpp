@@ -103,7 +103,22 @@ RawLayout parseRawLayout(const std::string& text) {
     return layout;
 }
 
+namespace {
+
+std::function<Volume(const VolumeSource&, const JobControl&)>& loader() {
+    static std::function<Volume(const VolumeSource&, const JobControl&)> load;
+    return load;
+}
+
+} // namespace
+
+void setVolumeLoader(std::function<Volume(const VolumeSource&, const JobControl&)> load) { loader() = std::move(load); }
+
 Volume loadVolume(const VolumeSource& source, const JobControl& job) {
+    return loader() ? loader()(source, job) : loadHere(source, job);
+}
+
+Volume loadHere(const VolumeSource& source, const JobControl& job) {
     if (source.path.empty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
     const bool builtIn = source.isSample();
     Volume volume = builtIn ? sample(source, job) : readFile(source, job);

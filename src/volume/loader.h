@@ -2,6 +2,7 @@
 // this call can move into a process of its own.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,6 +69,11 @@ struct VolumeSource {
 /// Files: NRRD/NHDR, MetaImage, NIfTI, VTK image data (VTI) and collections of files (PVD); headerless raw. Of a file
 /// with several time steps VolumeSource::step is read.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
+
+/// In a process that is one of several, loadVolume() gives it its part by this. `load` may call loadHere(); empty:
+/// loadVolume() is loadHere().
+void setVolumeLoader(std::function<Volume(const VolumeSource&, const JobControl&)> load);
+Volume loadHere(const VolumeSource& source, const JobControl& job = {});
 
 /// The files of all frames: those named and, where their headers name others, those of the data; none for a sample. A
 /// header that cannot be read names none here; loadVolume() tells what is wrong with it.

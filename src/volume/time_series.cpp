@@ -54,7 +54,8 @@ std::string problemOf(const Error& error, const std::string& path) {
 
 /// Of the frame's data, and of its codes of 16 bits with a byte for validity, where not all voxels are valid.
 std::size_t bytesOf(const Volume& volume) {
-    return (volume.isMapped() ? 0 : volume.memoryBytes()) + (volume.invalidCount() > 0 ? 3 : 2) * volume.size();
+    return (volume.isMapped() ? 0 : volume.memoryBytes()) +
+           (volume.invalidCount() > 0 ? 3 : 2) * voxelCount(volume.dimsHere());
 }
 
 } // namespace

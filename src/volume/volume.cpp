@@ -95,8 +95,9 @@ bool Geometry::contains(const Vec3& world) const {
     return p.x > lo.x && p.y > lo.y && p.z > lo.z && p.x < hi.x && p.y < hi.y && p.z < hi.z;
 }
 
-Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> missing)
-    : m_geometry(geometry), m_missing(missing) {
+namespace {
+
+void requireSound(const Geometry& geometry) {
     const Int3 d = geometry.dims;
     if (d.x < 1 || d.y < 1 || d.z < 1) throw Error("a volume needs at least one voxel along each axis", "", "");
     if (const std::string wrong = geometryProblem(geometry.spacing, geometry.origin); !wrong.empty())
@@ -106,8 +107,15 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
     for (int a = 0; a < 3; ++a) unit = unit && std::abs(glm::length(geometry.directions[a]) - 1) < 1e-6;
     if (!unit || !(std::abs(glm::determinant(geometry.directions)) > kFlat))
         throw Error("the axes of the grid lie in one plane, or are no directions", "", "correct the header");
+}
+
+} // namespace
+
+Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> missing)
+    : m_geometry(geometry), m_type(static_cast<SampleType>(samples.index())), m_missing(missing) {
+    requireSound(geometry);
     const std::size_t count = std::visit([](const auto& v) { return v.size(); }, samples);
-    if (count != voxelCount(d)) throw Error("number of samples and dimensions disagree", "", "");
+    if (count != voxelCount(geometry.dims)) throw Error("number of samples and dimensions disagree", "", "");
     m_samples = std::make_shared<const Samples>(std::move(samples));
     // −999.9 written as a decimal is not the float that the file holds for it.
     if (m_missing && sampleType() == SampleType::F32) m_missing = static_cast<double>(static_cast<float>(*m_missing));
@@ -116,18 +124,35 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
     m_range = m_dataRange = s.invalid < count ? ValueRange{s.lo, s.hi} : ValueRange{0, 0};
 }
 
+Volume::Volume(const Geometry& geometry, Distributed parts)
+    : m_geometry(geometry), m_type(parts.type), m_here(std::move(parts.here)), m_elsewhere(std::move(parts.elsewhere)),
+      m_missing(parts.missing), m_dataRange(parts.dataRange), m_range(parts.dataRange),
+      m_invalidCount(parts.invalidCount) {
+    requireSound(geometry);
+    PELLUCID_CHECK(m_elsewhere != nullptr);
+}
+
+const Samples& Volume::samples() const {
+    if (!m_samples)
+        throw Error("the voxels lie on several ranks, and this asks for all of them at once", title,
+                    "do it in one process, with pellucid-cli");
+    return *m_samples;
+}
+
 Volume Volume::withRange(const ValueRange& range) const {
     if (!std::isfinite(range.lo) || !std::isfinite(range.hi) || !(range.lo < range.hi))
         throw UsageError("the intensity range needs LO < HI, both finite", "intensity range",
                          "give two such numbers, in data units");
     Volume other = *this;
     other.m_range = range;
+    if (m_here) other.m_here = std::make_shared<const Volume>(m_here->withRange(range));
     other.m_codes = std::make_shared<SharedCodes>();
     return other;
 }
 
 Volume Volume::withGeometry(const Geometry& geometry) const {
     PELLUCID_CHECK(geometry.dims == m_geometry.dims);
+    if (m_elsewhere) static_cast<void>(samples()); // says that it cannot be done
     Volume other = *this;
     other.m_geometry = geometry;
     other.m_codes = std::make_shared<SharedCodes>();
@@ -135,7 +160,7 @@ Volume Volume::withGeometry(const Geometry& geometry) const {
 }
 
 double Volume::value(std::size_t index) const {
-    return std::visit([index](const auto& v) { return static_cast<double>(v[index]); }, *m_samples);
+    return std::visit([index](const auto& v) { return static_cast<double>(v[index]); }, samples());
 }
 
 bool Volume::isValid(std::size_t index) const { return valid(value(index), m_missing); }

@@ -1,10 +1,12 @@
 // A scalar volume as it was read: samples in their own type, where they lie in the world, and which are invalid.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -88,6 +90,19 @@ struct Excerpt {
     bool operator==(const Excerpt&) const = default;
 };
 
+/// What a process has of a volume that no process holds as a whole, and how it learns of the rest. Calls of gather()
+/// and sum() are collective: all processes make the same ones in the same order.
+class VoxelsElsewhere {
+public:
+    virtual ~VoxelsElsewhere() = default;
+    virtual VoxelRegion own() const = 0;    ///< the voxels that this process answers for; each has one that does
+    virtual VoxelRegion stored() const = 0; ///< these, and voxels around them
+    /// The bytes of each process, in an order that is the same for all.
+    virtual std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) const = 0;
+    /// The elements of all processes added up: the same bits for all.
+    virtual void sum(std::span<double> values) const = 0;
+};
+
 struct IntensityGrid;
 
 /// Where the holders of a volume's intensity codes find each other, see sharedIntensityGrid().
@@ -104,11 +119,30 @@ public:
     /// Throws Error where sizes and samples disagree, geometryProblem() finds one, or the axes lie in a plane.
     Volume(const Geometry& geometry, Samples samples, std::optional<double> missing = {});
 
+    /// What is known of a volume whose voxels lie in several processes; m_here and so on.
+    struct Distributed {
+        SampleType type = SampleType::U8;
+        ValueRange dataRange;
+        std::size_t invalidCount = 0;
+        std::optional<double> missing;
+        std::shared_ptr<const Volume> here; ///< the voxels of elsewhere->stored(), in the window dataRange; null: none
+        std::shared_ptr<const VoxelsElsewhere> elsewhere;
+    };
+    /// Samples and values of single voxels are not there: who asks for them gets an Error. What can be found out block
+    /// by block asks elsewhere() first.
+    Volume(const Geometry& geometry, Distributed parts);
+
+    const VoxelsElsewhere* elsewhere() const noexcept { return m_elsewhere.get(); } ///< null: all voxels are here
+    /// The part of a volume that is in this process, in the same window; null where it has none.
+    const std::shared_ptr<const Volume>& here() const noexcept { return m_here; }
+    /// Voxels that this process holds.
+    Int3 dimsHere() const { return !m_elsewhere ? dims() : m_here ? m_here->dims() : Int3(0); }
+
     const Geometry& geometry() const noexcept { return m_geometry; }
     const Int3& dims() const noexcept { return m_geometry.dims; }
     std::size_t size() const noexcept { return voxelCount(m_geometry.dims); }
-    SampleType sampleType() const noexcept { return static_cast<SampleType>(m_samples->index()); }
-    const Samples& samples() const noexcept { return *m_samples; }
+    SampleType sampleType() const noexcept { return m_type; }
+    const Samples& samples() const; ///< throws Error where the voxels lie in several processes
     std::optional<double> missing() const noexcept { return m_missing; }
 
     /// Smallest and largest valid value; {0, 0} where no voxel is valid.
@@ -134,10 +168,10 @@ public:
     double valueOfIntensity(double s) const { return m_range.lo + s * (m_range.hi - m_range.lo); }
 
     SharedCodes& sharedCodes() const noexcept { return *m_codes; }
-    std::size_t memoryBytes() const noexcept { return size() * bytesPerSample(sampleType()); }
+    std::size_t memoryBytes() const { return voxelCount(dimsHere()) * bytesPerSample(sampleType()); }
     /// The samples lie in their file, which the system reads as they are looked at.
     bool isMapped() const {
-        return std::visit([](const auto& values) { return values.isMapped(); }, *m_samples);
+        return m_samples && std::visit([](const auto& values) { return values.isMapped(); }, *m_samples);
     }
 
     /// Free text for people, set by readers and generators.
@@ -150,7 +184,10 @@ public:
 
 private:
     Geometry m_geometry;
+    SampleType m_type = SampleType::U8;
     std::shared_ptr<const Samples> m_samples;
+    std::shared_ptr<const Volume> m_here;
+    std::shared_ptr<const VoxelsElsewhere> m_elsewhere;
     std::optional<double> m_missing;
     ValueRange m_dataRange, m_range;
     std::size_t m_invalidCount = 0;

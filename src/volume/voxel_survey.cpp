@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include <glm/geometric.hpp>
 
 #include "base/parallel.h"
+#include "volume/fetched_values.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -22,45 +24,57 @@ std::uint32_t hashOf(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return h ^ (h >> 15);
 }
 
+/// The voxels that trilinear interpolation looks at, and their weights: body(voxel, weight).
+template <class Body>
+void forCorners(const Vec3& p, const Body& body) {
+    const Vec3 floor = glm::floor(p);
+    const Int3 v(floor);
+    const Vec3 f = p - floor;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Int3 d(corner & 1, corner >> 1 & 1, corner >> 2);
+        const double weight = (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z);
+        if (weight > 0) body(v + d, weight);
+    }
+}
+
 /// Values of voxels: NaN where invalid or outside.
-template <class T>
+template <class Values>
 class Reader {
 public:
-    Reader(const Volume& volume, const T* samples)
-        : m_samples(samples), m_dims(volume.dims()), m_missing(volume.missing().value_or(kNaN)) {}
+    Reader(const Int3& dims, const Values& values) : m_values(values), m_dims(dims) {}
 
-    double at(const Int3& v) const {
-        if (v.x < 0 || v.y < 0 || v.z < 0 || v.x >= m_dims.x || v.y >= m_dims.y || v.z >= m_dims.z) return kNaN;
-        return at(index(v));
+    bool isInside(const Int3& v) const {
+        return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < m_dims.x && v.y < m_dims.y && v.z < m_dims.z;
     }
-    double at(std::size_t i) const {
-        const auto value = static_cast<double>(m_samples[i]);
-        return std::isfinite(value) && value != m_missing ? value : kNaN;
-    }
+    double at(const Int3& v) const { return isInside(v) ? m_values(index(v)) : kNaN; }
     std::size_t index(const Int3& v) const { return voxelIndex(m_dims, v.x, v.y, v.z); }
     /// Trilinear; NaN where a corner with weight is invalid or outside.
     double at(const Vec3& p) const {
-        const Vec3 floor = glm::floor(p);
-        const Int3 v(floor);
-        const Vec3 f = p - floor;
         double sum = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-            const Int3 d(corner & 1, corner >> 1 & 1, corner >> 2);
-            const double weight = (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z);
-            if (weight > 0) sum += weight * at(v + d);
-        }
+        forCorners(p, [&](const Int3& v, double weight) { sum += weight * at(v); });
         return sum;
     }
 
 private:
-    const T* m_samples;
+    const Values& m_values;
     Int3 m_dims;
-    double m_missing;
 };
 
+/// Those that differences() looks at.
+template <class Ask>
+void askAround(const Int3& v, const Ask& ask) {
+    ask(v);
+    for (int a = 0; a < 3; ++a) {
+        Int3 step(0);
+        step[a] = 1;
+        ask(v - step);
+        ask(v + step);
+    }
+}
+
 /// Central differences per voxel step; one-sided where a neighbour is missing, 0 where both are.
-template <class T>
-Vec3 differences(const Reader<T>& read, const Int3& v, double value) {
+template <class Values>
+Vec3 differences(const Reader<Values>& read, const Int3& v, double value) {
     Vec3 d(0);
     for (int a = 0; a < 3; ++a) {
         Int3 step(0);
@@ -109,12 +123,18 @@ VoxelSurvey surveyVoxels(const Volume& volume, const JobControl& job) {
         const auto end = static_cast<int>(static_cast<std::int64_t>(cell + 1) * full[a] / n);
         return begin + static_cast<int>(random % static_cast<std::uint32_t>(end - begin));
     };
-    withSamples(volume, [&](const auto& samples) {
-        const Reader read(volume, samples.data());
+    const auto picked = [&](const Int3& cell) {
+        const std::uint32_t h = hashOf(static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
+                                       static_cast<std::uint32_t>(cell.z));
+        return Int3(pick(0, cell.x, h), pick(1, cell.y, h >> 10), pick(2, cell.z, h >> 20));
+    };
+    const auto wanted = [&](const auto& ask) {
+        for (std::size_t i = 0; i < cells; ++i) askAround(picked(voxelAt(survey.dims, i)), ask);
+    };
+    withValues(volume, wanted, [&](const auto& values) {
+        const Reader read(full, values);
         forEachPlace(survey.dims, job, [&](const Int3& cell, std::size_t at) {
-            const std::uint32_t h = hashOf(static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
-                                           static_cast<std::uint32_t>(cell.z));
-            const Int3 v(pick(0, cell.x, h), pick(1, cell.y, h >> 10), pick(2, cell.z, h >> 20));
+            const Int3 v = picked(cell);
             const double value = read.at(v);
             survey.indices[at] = read.index(v);
             survey.values[at] = value;
@@ -134,28 +154,51 @@ std::vector<BoundaryEnds> boundaryEnds(const Volume& volume, const VoxelSurvey& 
     const Vec3 perD0 = Vec3(volume.geometry().d0()) / volume.geometry().spacing;
     constexpr std::size_t kPiece = 1024;
     constexpr int kMostSteps = 8;
-    withSamples(volume, [&](const auto& samples) {
-        const Reader read(volume, samples.data());
+    const auto voxelOf = [&](std::size_t n) { return voxelAt(volume.dims(), steep[n * steep.size() / count]); };
+    const auto inPieces = [&](const auto& body) {
         parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
             job.throwIfStopped();
-            for (std::size_t n = piece * kPiece; n < std::min(count, (piece + 1) * kPiece); ++n) {
-                const Int3 v = voxelAt(volume.dims(), steep[n * steep.size() / count]);
-                const double value = read.at(v);
-                const Vec3 gradient = differences(read, v, value) * perD0;
-                const Vec3 step = gradient / glm::length(gradient) * perD0; // one d0, in voxels
-                const auto walk = [&](double sign) {
-                    double last = value;
-                    for (int s = 1; s <= kMostSteps; ++s) {
-                        const double next = read.at(Vec3(v) + sign * s * step);
-                        if (std::isnan(next) || sign * (next - last) <= 0) break;
-                        const double change = sign * (next - last);
-                        last = next;
-                        if (change < flat) break;
-                    }
-                    return last;
-                };
-                ends[n] = {walk(-1), walk(1)};
-            }
+            for (std::size_t n = piece * kPiece; n < std::min(count, (piece + 1) * kPiece); ++n) body(n);
+        });
+    };
+
+    // Where each path begins, and which way it goes.
+    std::vector<double> begins(count);
+    std::vector<Vec3> steps(count); // one d0, in voxels
+    const auto around = [&](const auto& ask) {
+        for (std::size_t n = 0; n < count; ++n) askAround(voxelOf(n), ask);
+    };
+    withValues(volume, around, [&](const auto& values) {
+        const Reader read(volume.dims(), values);
+        inPieces([&](std::size_t n) {
+            begins[n] = read.at(voxelOf(n));
+            const Vec3 gradient = differences(read, voxelOf(n), begins[n]) * perD0;
+            steps[n] = gradient / glm::length(gradient) * perD0;
+        });
+    });
+    // Along it, to either side.
+    const auto alongPaths = [&](const auto& ask) {
+        for (std::size_t n = 0; n < count; ++n)
+            for (int s = -kMostSteps; s <= kMostSteps; ++s)
+                if (s != 0)
+                    forCorners(Vec3(voxelOf(n)) + static_cast<double>(s) * steps[n],
+                               [&](const Int3& v, double) { ask(v); });
+    };
+    withValues(volume, alongPaths, [&](const auto& values) {
+        const Reader read(volume.dims(), values);
+        inPieces([&](std::size_t n) {
+            const auto walk = [&](double sign) {
+                double last = begins[n];
+                for (int s = 1; s <= kMostSteps; ++s) {
+                    const double next = read.at(Vec3(voxelOf(n)) + sign * s * steps[n]);
+                    if (std::isnan(next) || sign * (next - last) <= 0) break;
+                    const double change = sign * (next - last);
+                    last = next;
+                    if (change < flat) break;
+                }
+                return last;
+            };
+            ends[n] = {walk(-1), walk(1)};
         });
     });
     return ends;

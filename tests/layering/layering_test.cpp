@@ -25,7 +25,9 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/render/gl", {"base", "volume", "tf", "saliency", "render"}},
     {"src/image_io", {"base", "volume", "tf", "saliency", "render"}},
     {"src/optimize", {"base", "volume", "tf", "saliency", "render"}},
-    {"src/engines", {"base", "volume", "tf", "saliency", "render"}},
+    {"src/ranks", {"base", "volume", "tf", "saliency", "render"}},
+    {"src/ranks/mpi", {"base", "ranks"}},
+    {"src/engines", {"base", "volume", "tf", "saliency", "render", "ranks"}},
     {"src/bench", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/session", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/film", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
@@ -33,16 +35,17 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/report",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study"}},
     {"app/cli",
-     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "bench", "session", "study",
-      "report", "film", "cli"}},
+     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "ranks", "engines", "bench", "session",
+      "study", "report", "film", "cli"}},
+    {"app/mpi", {"base", "volume", "tf", "saliency", "render", "ranks", "cli"}},
     {"app/gui",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study", "report",
       "film", "gui"}},
     {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
-const std::set<std::string> kOurFolders{"base",     "volume",  "tf",    "saliency", "render", "image_io",
-                                        "optimize", "engines", "bench", "session",  "study",  "report",
-                                        "film",     "cli",     "gui",   "gpu_check"};
+const std::set<std::string> kOurFolders{"base",     "volume",  "tf",    "saliency", "render",   "image_io",
+                                        "optimize", "engines", "bench", "session",  "study",    "report",
+                                        "film",     "ranks",   "cli",   "gui",      "gpu_check"};
 
 /// The folders of app/gui: each may include those before its row, and itself. What lies beside them, main.cpp, all.
 const std::vector<std::set<std::string>> kGuiRows{{"jobs"},   {"store"},    {"widgets"},     {"dialogs"},
@@ -176,6 +179,9 @@ std::string fault(const Include& include) {
     const bool gl = include.name == "epoxy/gl.h" || include.name == "epoxy/egl.h" || startsWith(include.name, "GL/") ||
                     startsWith(include.name, "EGL/") || startsWith(include.name, "GLES");
     if (gl && layer != "src/render/gl") return "GL outside src/render/gl";
+    if (include.name == "mpi.h" && layer != "src/ranks/mpi") return "MPI outside src/ranks/mpi";
+    if (startsWith(include.name, "ranks/mpi/") && layer != "src/ranks/mpi" && layer != "app/mpi")
+        return "only pellucid-mpi may include ranks/mpi";
     static const std::regex qt("^(Q[A-Z]|Qt[A-Z]).*");
     if (std::regex_match(include.name, qt) && layer != "app/gui") return "Qt outside app/gui";
     if (layer == "app/gui")
@@ -234,6 +240,10 @@ TEST_CASE("the rule itself catches what it should", "[layering]") {
     CHECK(fault({"src/render/a.cpp", 1, "epoxy/gl.h"}) != "");
     CHECK(fault({"src/render/a.cpp", 1, "render/gl/gl_engines.h"}) != "");
     CHECK(fault({"src/session/a.cpp", 1, "render/gl/gl_engines.h"}) != "");
+    CHECK(fault({"src/ranks/a.cpp", 1, "mpi.h"}) != "");
+    CHECK(fault({"src/engines/a.cpp", 1, "ranks/mpi/mpi_communicator.h"}) != "");
+    CHECK(fault({"src/ranks/a.cpp", 1, "optimize/measure.h"}) != "");
+    CHECK(fault({"src/ranks/mpi/a.cpp", 1, "mpi.h"}) == "");
     CHECK(fault({"app/cli/a.cpp", 1, "render/gl/gl_engines.h"}) != "");
     CHECK(fault({"src/optimize/a.cpp", 1, "session/scene.h"}) != "");
     CHECK(fault({"src/optimize/a.h", 1, "QWidget"}) != "");

@@ -5,6 +5,7 @@
 #include <QMessageBox>
 
 #include "dialogs/ask_file.h"
+#include "dialogs/error_dialog.h"
 #include "dialogs/film_dialog.h"
 #include "film/movie_file.h"
 #include "render/camera_motion.h"
@@ -73,7 +74,7 @@ void FilmController::choose() {
         const FilmOptions chosen = dialog.options();
         if (chosen.path.isEmpty()) continue;
         FilmTask task{scene};
-        const bool good = m_services.attempt(tr("Cannot save the film"), [&] {
+        try {
             std::vector<Camera> views;
             if (chosen.settings.kind == FilmKind::Views) views = viewsOfText(chosen.views.toStdString(), scene);
             task.shots = shotsOf(chosen.settings, views, scene);
@@ -83,8 +84,10 @@ void FilmController::choose() {
             if (chosen.annotated) task.around = *scene.session.reference;
             task.path = chosen.path.toStdString();
             checkFilm(task);
-        });
-        if (!good) continue;
+        } catch (const Error& error) { // read before the dialog comes back, which would cover it
+            showErrorFirst(m_services.window(), tr("Cannot save the film"), error);
+            continue;
+        }
         const QString first = isMovie(task.path) ? chosen.path : QString::fromStdString(pictureFileOf(task.path, 0));
         if (QFileInfo::exists(first) &&
             QMessageBox::question(m_services.window(), tr("Save film"),

@@ -46,7 +46,9 @@ QString adviceFor(const Error& error) {
     }
 }
 
-void showError(QWidget* parent, const QString& title, const Error& error) {
+namespace {
+
+QDialog* dialogOf(QWidget* parent, const QString& title, const Error& error) {
     auto* dialog = new QDialog(parent);
     dialog->setObjectName("errorDialog");
     dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -75,7 +77,15 @@ void showError(QWidget* parent, const QString& title, const Error& error) {
     part(QObject::tr("What to do"), asSentence(adviceFor(error)), "errorWhatToDo");
     grid->setColumnStretch(2, 1);
     grid->addWidget(closingButtons(*dialog, QDialogButtonBox::Ok), row, 0, 1, 3);
-    dialog->open();
+    return dialog;
+}
+
+} // namespace
+
+void showError(QWidget* parent, const QString& title, const Error& error) { dialogOf(parent, title, error)->open(); }
+
+void showErrorFirst(QWidget* parent, const QString& title, const Error& error) {
+    dialogOf(parent, title, error)->exec();
 }
 
 } // namespace pellucid::gui

@@ -14,5 +14,7 @@ QString adviceFor(const Error& error);
 
 /// Does not wait for an answer. The parts are labels named errorWhat, errorWhere and errorWhatToDo.
 void showError(QWidget* parent, const QString& title, const Error& error);
+/// Waits until it has been read: of a dialog that comes back then.
+void showErrorFirst(QWidget* parent, const QString& title, const Error& error);
 
 } // namespace pellucid::gui

@@ -14,6 +14,7 @@ namespace {
 // Logical pixels.
 constexpr int kMargin = 8, kLeastWidth = 480, kMostWidth = 720;
 constexpr int kCorner = 100; // of the picture, where the cube and the scale stand
+constexpr int kMarks = 44;   // above the lower edge: the scale and the letter of the direction below
 
 } // namespace
 
@@ -55,7 +56,7 @@ void NoticeBar::place() {
         longest = std::max(longest, m_label->fontMetrics().horizontalAdvance(line) + 8);
     const int width = std::min({room, kMostWidth, around + longest});
     const int height = layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(width) : sizeHint().height();
-    setGeometry((parentWidget()->width() - width) / 2, parentWidget()->height() - height - kMargin, width, height);
+    setGeometry((parentWidget()->width() - width) / 2, parentWidget()->height() - height - kMarks, width, height);
     raise();
 }
 

@@ -11,8 +11,9 @@ namespace {
 
 class CpuEngine final : public VisibilityEngine {
 public:
-    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality, SweepKernel kernel, bool draft = false)
-        : m_volume(std::move(volume), quality, draft), m_runner(kernel) {}
+    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality, SweepKernel kernel, bool draft = false,
+              PieceShare share = {})
+        : m_volume(std::move(volume), quality, draft), m_runner(kernel, std::move(share)) {}
 
     std::string name() const override { return "cpu"; }
     const Volume& volume() const override { return m_volume.stored(); }
@@ -65,8 +66,8 @@ std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> vo
 }
 
 std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality,
-                                                SweepKernel kernel) {
-    return std::make_unique<CpuEngine>(std::move(volume), quality, kernel);
+                                                SweepKernel kernel, PieceShare share) {
+    return std::make_unique<CpuEngine>(std::move(volume), quality, kernel, false, std::move(share));
 }
 
 FeatureSums featureSumsOf(std::span<const double> totals, std::size_t features, std::size_t lane, std::size_t lanes,

@@ -2,12 +2,13 @@
 #pragma once
 
 #include "render/cpu/sweep.h"
+#include "render/cpu/sweep_run.h"
 #include "render/visibility.h"
 
 namespace pellucid {
 
 std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality,
-                                                SweepKernel kernel);
+                                                SweepKernel kernel, PieceShare share = {});
 
 /// To compare hundreds of views: samples every volume as sparsely as large ones are sampled, which makes small ones
 /// several times faster and their figures less exact (docs/method.md, "The best view").

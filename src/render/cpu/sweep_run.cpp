@@ -13,14 +13,17 @@ void SweepRunner::run(const SweepInput& in, const std::vector<SweepPiece>& piece
                       const JobControl& job) {
     std::vector<std::vector<double>> partial(pieces.size());
     std::atomic<std::size_t> done = 0;
+    const bool shared = m_share.complete && in.field == nullptr; // a field is made by all
     parallelFor(pieces.size(), [&](std::size_t i) {
         job.throwIfStopped();
+        if (shared && i % m_share.parts != m_share.part) return;
         partial[i].assign(sums.size(), 0.0);
         const auto scratch = borrowScratch();
         m_kernel(in, pieces[i], *scratch, partial[i].data());
         returnScratch(scratch);
         job.report(static_cast<double>(++done) / static_cast<double>(pieces.size()));
     });
+    if (shared && !pieces.empty()) m_share.complete(partial, sums.size());
     for (const auto& part : partial)
         for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += part[i];
 }

@@ -14,10 +14,17 @@
 
 namespace pellucid {
 
+/// Which pieces of a sweep are done here, where several processes share one: every `parts`-th from `part` on.
+struct PieceShare {
+    std::size_t part = 0, parts = 1;
+    /// Given the sums of the own pieces, `size` of each, fills in those of the others.
+    std::function<void(std::vector<std::vector<double>>&, std::size_t size)> complete;
+};
+
 /// Keeps the memory that pieces are worked on in.
 class SweepRunner {
 public:
-    explicit SweepRunner(SweepKernel kernel) : m_kernel(kernel) {}
+    explicit SweepRunner(SweepKernel kernel, PieceShare share = {}) : m_kernel(kernel), m_share(std::move(share)) {}
 
     /// Adds the sums of all pieces to `sums` in their order, whatever thread made them. Throws Cancelled.
     void run(const SweepInput& in, const std::vector<SweepPiece>& pieces, std::vector<double>& sums,
@@ -28,6 +35,7 @@ private:
     void returnScratch(std::shared_ptr<SweepScratch> scratch);
 
     SweepKernel m_kernel;
+    PieceShare m_share;
     std::mutex m_mutex;
     std::vector<std::shared_ptr<SweepScratch>> m_scratch;
 };

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/parallel.h"
+#include "volume/memory_use.h"
 
 namespace pellucid {
 
@@ -145,7 +146,12 @@ SweepVolume::SweepVolume(std::shared_ptr<const Volume> block, const Geometry& wh
 }
 
 void SweepVolume::makeCodes() {
-    m_shared = sharedIntensityGrid(*m_volume);
+    // A block's codes are as those of the whole would be.
+    if (m_geometry.dims == m_volume->dims())
+        m_shared = sharedIntensityGrid(*m_volume);
+    else
+        m_shared = std::make_shared<const IntensityGrid>(makeIntensityGrid(
+            *m_volume, isLean(m_geometry.dims, m_volume->sampleType()) ? CodeWidth::Narrow : CodeWidth::Wide));
     const IntensityGrid& grid = *m_shared;
     const bool someInvalid = !grid.valid.empty();
     // Without gaps, so that tables are short; and with one code for all that is invalid.

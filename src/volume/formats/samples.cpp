@@ -306,7 +306,9 @@ template <class T, class Kept, class Convert>
 Collected collectExcerpt(Values& values, const Selection& selection, const ExcerptPlan& plan,
                          std::optional<double> missing, const JobControl& job, const Convert& convert) {
     const Int3 lo = plan.region.lo, size = plan.region.hi - lo;
-    std::vector<Kept> kept(voxelCount(plan.dims)), row(static_cast<std::size_t>(size.x));
+    // Padded, so that codes of 8 bits need no copy.
+    std::vector<Kept> kept(voxelCount(plan.dims) + SampleArray<Kept>::kPadding), row(static_cast<std::size_t>(size.x));
+    const bool asItIs = plan.factors == Int3(1);
     const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
     LayerMeans<Kept> means({size.x, size.y}, plan.factors, missing);
     VoxelReader<T> reader(values, selection.stride[0]);
@@ -322,13 +324,18 @@ Collected collectExcerpt(Values& values, const Selection& selection, const Excer
             reader.readLine(start(j, k), row.size(), [&](const T* piece, std::uint64_t voxels) {
                 for (std::uint64_t v = 0; v < voxels; ++v) *to++ = convert(piece[v * selection.stride[0]]);
             });
-            means.add(row.data(), j);
+            if (asItIs)
+                std::copy(row.begin(), row.end(),
+                          kept.data() + layer * static_cast<std::size_t>(k) + row.size() * static_cast<std::size_t>(j));
+            else
+                means.add(row.data(), j);
             progress.add(row.size());
         }
+        if (asItIs) continue;
         if (k % plan.factors.z == plan.factors.z - 1 || k == size.z - 1)
             means.takeTo(kept.data() + layer * static_cast<std::size_t>(k / plan.factors.z));
     }
-    return {std::move(kept), plan.factors == Int3(1) ? ValueRange{0, -1} : means.range()};
+    return {SampleArray<Kept>(std::move(kept), voxelCount(plan.dims)), asItIs ? ValueRange{0, -1} : means.range()};
 }
 
 /// Whether the voxels lie one behind the other.

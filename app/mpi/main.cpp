@@ -1,0 +1,75 @@
+// pellucid-mpi: commands of pellucid-cli on volumes that no process holds as a whole. All ranks do the same; what they
+// have of a volume differs. Rank 0 alone says anything and writes files.
+#include <cmath>
+#include <cstdlib>
+
+#include "base/atomic_file.h"
+#include "program.h"
+#include "ranks/mpi/mpi_communicator.h"
+#include "ranks/process_ranks.h"
+#include "ranks/rank_volume.h"
+#include "saliency/saliency_field.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+std::vector<Command> addCommands(CLI::App& program) {
+    return {addInfo(program), addMeasure(program), addOptimize(program)};
+}
+
+/// Voxels around blocks that saliency looks at: 2σ in d0, which no axis has more voxels of. Before options are parsed.
+int ghostsFor(const std::vector<std::string>& arguments) {
+    double sigma = SaliencyOptions().sigma;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        std::string text;
+        if (arguments[i] == "--sigma" && i + 1 < arguments.size()) text = arguments[i + 1];
+        if (arguments[i].starts_with("--sigma=")) text = arguments[i].substr(8);
+        char* end = nullptr;
+        if (const double value = std::strtod(text.c_str(), &end); end != text.c_str() && value > 0 && value <= 8)
+            sigma = value;
+    }
+    return std::max(kRayGhosts, static_cast<int>(std::ceil(2 * sigma)));
+}
+
+Outcome runOnRanks(const Program& program, const std::vector<std::string>& arguments, MpiRanks& ranks) {
+    try {
+        ranks.requireSameProgram();
+    } catch (const RankLost&) {
+        return {1, {}, {}, {}};
+    } catch (const Error& e) {
+        return {1, {}, e.what(), {}};
+    }
+    setRanksOfProcess(&ranks);
+    keepWrittenFiles(ranks.rank() == 0);
+    RankLayout layout;
+    layout.ghosts = Int3(ghostsFor(arguments));
+    setVolumeLoader([&ranks, layout](const VolumeSource& source, const JobControl& job) {
+        return loadOnRanks(ranks, source, layout, job);
+    });
+    return run(program, arguments);
+}
+
+} // namespace
+
+} // namespace pellucid::cli
+
+int main(int argc, char** argv) {
+    namespace cli = pellucid::cli;
+    cli::beginProgram();
+    cli::Program program{"pellucid-mpi",
+                         "Pellucid on many ranks: measures and optimizes volumes that no process holds as a whole. "
+                         "Start it with mpirun.",
+                         cli::addCommands};
+    try {
+        pellucid::MpiRanks ranks(argc, argv);
+        program.shows = ranks.rank() == 0;
+        cli::Outcome outcome = cli::runOnRanks(program, {argv + 1, argv + argc}, ranks);
+        const auto ending = ranks.leave({outcome.status, outcome.error});
+        if (ending.status != 0 && outcome.status == 0) outcome = {ending.status, {}, {}, {}};
+        outcome.error = ending.message;
+        return ranks.rank() == 0 ? cli::tell(program, outcome) : outcome.status;
+    } catch (const pellucid::Error& e) {
+        return cli::tell(program, {1, {}, e.what(), {}});
+    }
+}

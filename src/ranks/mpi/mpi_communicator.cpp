@@ -1,0 +1,234 @@
+#include "ranks/mpi/mpi_communicator.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+
+#include <mpi.h>
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kTag = 1;
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 30; ///< bytes: MPI counts in int
+
+void require(int code, const char* doing) {
+    if (code == MPI_SUCCESS) return;
+    std::array<char, MPI_MAX_ERROR_STRING> text{};
+    int length = 0;
+    MPI_Error_string(code, text.data(), &length);
+    throw Error(std::string("MPI cannot ") + doing + ": " + std::string(text.data(), static_cast<std::size_t>(length)),
+                "", "see what mpirun says of the network and the ranks");
+}
+
+/// Of the program that runs, so that ranks with different ones find out.
+std::uint64_t programHash() {
+    std::ifstream in("/proc/self/exe", std::ios::binary);
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    std::vector<char> piece(1 << 20);
+    while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
+        for (std::streamsize i = 0; i < in.gcount(); ++i)
+            hash = (hash ^ static_cast<unsigned char>(piece[static_cast<std::size_t>(i)])) * 0x100000001b3u;
+    return hash;
+}
+
+/// Where a rank fails amid a call, the others wait for messages that never come: it takes all with it.
+class Together {
+public:
+    Together() : m_exceptions(std::uncaught_exceptions()) {}
+    ~Together() {
+        if (std::uncaught_exceptions() <= m_exceptions) return;
+        std::fprintf(stderr,
+                     "pellucid-mpi: error: a rank has no memory for the messages of others, or the network failed, "
+                     "use more ranks or machines with more memory\n");
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+    Together(const Together&) = delete;
+    Together& operator=(const Together&) = delete;
+
+private:
+    int m_exceptions;
+};
+
+} // namespace
+
+MpiRanks::MpiRanks(int& argc, char**& argv) {
+    int provided = 0;
+    require(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "begin");
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    MPI_Comm_rank(MPI_COMM_WORLD, &m_rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &m_size);
+}
+
+MpiRanks::~MpiRanks() {
+    // What has not been agreed on cannot be ended in order: others may wait for this one for ever.
+    if (!m_left && m_size > 1) MPI_Abort(MPI_COMM_WORLD, 1);
+    MPI_Finalize();
+}
+
+void MpiRanks::requireSameProgram() {
+    const auto all = gatherValues(*this, programHash());
+    for (const std::uint64_t other : all)
+        if (other != all.front())
+            throw Error("the ranks run different programs", "mpirun", "give all of them the same pellucid-mpi");
+}
+
+void MpiRanks::requireAll() {
+    ++m_traffic.rounds;
+    int well = 1, all = 0;
+    require(MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD), "reach all ranks");
+    if (all == 1) return;
+    m_lost = true;
+    throw RankLost();
+}
+
+MpiRanks::Ending MpiRanks::leave(const Ending& mine) {
+    m_left = true;
+    // The others may be in any of their calls, which all begin with requireAll().
+    if (!m_lost) {
+        int well = mine.status == 0 ? 1 : 0, all = 0;
+        MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    }
+    const std::string& text = mine.message;
+    const std::array<int, 2> own{mine.status, static_cast<int>(text.size())};
+    std::vector<int> sizes(static_cast<std::size_t>(m_size) * 2);
+    MPI_Allgather(own.data(), 2, MPI_INT, sizes.data(), 2, MPI_INT, MPI_COMM_WORLD);
+    Ending result;
+    int from = -1;
+    bool allSay = true;
+    for (int r = m_size - 1; r >= 0; --r) {
+        const int status = sizes[static_cast<std::size_t>(r) * 2], length = sizes[static_cast<std::size_t>(r) * 2 + 1];
+        if (status != 0 && (result.status == 0 || length > 0)) result.status = status;
+        if (length > 0)
+            from = r;
+        else
+            allSay = false;
+    }
+    if (from < 0) return result;
+    result.message.resize(static_cast<std::size_t>(sizes[static_cast<std::size_t>(from) * 2 + 1]));
+    if (m_rank == from) result.message = text;
+    MPI_Bcast(result.message.data(), static_cast<int>(result.message.size()), MPI_CHAR, from, MPI_COMM_WORLD);
+    if (!allSay && m_size > 1) result.message = "rank " + std::to_string(from) + ": " + result.message;
+    return result;
+}
+
+std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
+    requireAll();
+    const Together together;
+    const auto count = static_cast<std::size_t>(m_size);
+    std::vector<std::uint64_t> send(count, 0), receive(count, 0);
+    for (const RankMessage& message : messages) send[static_cast<std::size_t>(message.rank)] = message.bytes.size();
+    require(MPI_Alltoall(send.data(), 1, MPI_UINT64_T, receive.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD),
+            "tell how much is sent");
+    std::vector<RankMessage> arrived;
+    for (std::size_t r = 0; r < count; ++r) {
+        if (receive[r] == 0) continue;
+        RankMessage& message = arrived.emplace_back();
+        message.rank = static_cast<int>(r);
+        if (message.rank != m_rank) message.bytes.resize(receive[r]);
+    }
+    std::vector<MPI_Request> requests;
+    for (RankMessage& message : arrived)
+        for (std::size_t at = 0; message.rank != m_rank && at < message.bytes.size(); at += kMostAtOnce)
+            require(MPI_Irecv(message.bytes.data() + at,
+                              static_cast<int>(std::min(kMostAtOnce, message.bytes.size() - at)), MPI_BYTE,
+                              message.rank, kTag, MPI_COMM_WORLD, &requests.emplace_back()),
+                    "receive");
+    for (RankMessage& message : messages) {
+        if (message.bytes.empty()) continue;
+        if (message.rank == m_rank) {
+            for (RankMessage& mine : arrived)
+                if (mine.rank == m_rank) mine.bytes = std::move(message.bytes);
+            continue;
+        }
+        m_traffic.bytes += message.bytes.size();
+        ++m_traffic.messages;
+        for (std::size_t at = 0; at < message.bytes.size(); at += kMostAtOnce)
+            require(MPI_Isend(message.bytes.data() + at,
+                              static_cast<int>(std::min(kMostAtOnce, message.bytes.size() - at)), MPI_BYTE,
+                              message.rank, kTag, MPI_COMM_WORLD, &requests.emplace_back()),
+                    "send");
+    }
+    ++m_traffic.rounds;
+    require(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE), "exchange messages");
+    return arrived;
+}
+
+void MpiRanks::sum(std::span<double> values) {
+    requireAll();
+    const Together together;
+    const int count = static_cast<int>(values.size());
+    std::vector<double> other(values.size());
+    // Pairs, pairs of pairs, …: the order depends on the number of ranks alone.
+    for (int step = 1; step < m_size; step *= 2) {
+        if ((m_rank & step) != 0) {
+            require(MPI_Send(values.data(), count, MPI_DOUBLE, m_rank - step, kTag, MPI_COMM_WORLD), "send");
+            m_traffic.bytes += values.size_bytes();
+            ++m_traffic.messages;
+            break;
+        }
+        if (m_rank + step >= m_size) continue;
+        require(MPI_Recv(other.data(), count, MPI_DOUBLE, m_rank + step, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE),
+                "receive");
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] += other[i];
+    }
+    require(MPI_Bcast(values.data(), count, MPI_DOUBLE, 0, MPI_COMM_WORLD), "tell all ranks");
+}
+
+void MpiRanks::broadcast(std::vector<std::byte>& bytes) {
+    requireAll();
+    const Together together;
+    std::uint64_t size = bytes.size();
+    require(MPI_Bcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD), "tell all ranks");
+    bytes.resize(size);
+    for (std::size_t at = 0; at < size; at += kMostAtOnce)
+        require(MPI_Bcast(bytes.data() + at, static_cast<int>(std::min<std::size_t>(kMostAtOnce, size - at)), MPI_BYTE,
+                          0, MPI_COMM_WORLD),
+                "tell all ranks");
+}
+
+std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> bytes) {
+    requireAll();
+    const Together together;
+    const auto count = static_cast<std::size_t>(m_size);
+    const std::uint64_t mine = bytes.size();
+    std::vector<std::uint64_t> sizes(count);
+    require(MPI_Allgather(&mine, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD), "tell all ranks");
+    // A rank after the other where one is large, since MPI counts in int; else all at once.
+    std::vector<std::vector<std::byte>> all(count);
+    std::uint64_t total = 0;
+    for (const std::uint64_t size : sizes) total += size;
+    m_traffic.bytes += mine * (count - 1);
+    if (total < kMostAtOnce) {
+        std::vector<std::byte> joined(total);
+        std::vector<int> counts(count), starts(count);
+        for (std::size_t r = 0, at = 0; r < count; at += sizes[r], ++r) {
+            counts[r] = static_cast<int>(sizes[r]);
+            starts[r] = static_cast<int>(at);
+        }
+        require(MPI_Allgatherv(bytes.data(), static_cast<int>(mine), MPI_BYTE, joined.data(), counts.data(),
+                               starts.data(), MPI_BYTE, MPI_COMM_WORLD),
+                "tell all ranks");
+        for (std::size_t r = 0; r < count; ++r) {
+            const auto first = joined.begin() + starts[r];
+            all[r].assign(first, first + counts[r]);
+        }
+        return all;
+    }
+    for (std::size_t r = 0; r < count; ++r) {
+        if (static_cast<int>(r) == m_rank) all[r].assign(bytes.begin(), bytes.end());
+        all[r].resize(sizes[r]);
+        for (std::size_t at = 0; at < sizes[r]; at += kMostAtOnce)
+            require(MPI_Bcast(all[r].data() + at, static_cast<int>(std::min<std::size_t>(kMostAtOnce, sizes[r] - at)),
+                              MPI_BYTE, static_cast<int>(r), MPI_COMM_WORLD),
+                    "tell all ranks");
+    }
+    return all;
+}
+
+void MpiRanks::barrier() { requireAll(); }
+
+} // namespace pellucid

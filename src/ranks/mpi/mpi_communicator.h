@@ -1,0 +1,48 @@
+// Ranks by MPI: the only place that knows it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "ranks/communicator.h"
+
+namespace pellucid {
+
+/// MPI from the beginning of a program to its end; one at a time.
+class MpiRanks final : public Communicator {
+public:
+    /// Begins. Throws Error where MPI cannot.
+    MpiRanks(int& argc, char**& argv);
+    /// Ends it; where leave() was not called and another rank still waits, that one ends, too.
+    ~MpiRanks() override;
+    MpiRanks(const MpiRanks&) = delete;
+    MpiRanks& operator=(const MpiRanks&) = delete;
+
+    int rank() const override { return m_rank; }
+    int size() const override { return m_size; }
+    std::vector<RankMessage> exchange(std::vector<RankMessage> messages) override;
+    void sum(std::span<double> values) override;
+    void broadcast(std::vector<std::byte>& bytes) override;
+    std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) override;
+    void barrier() override;
+
+    /// Throws Error where ranks run different programs.
+    void requireSameProgram();
+
+    /// How a rank's work ended: what it would say, empty where all is well. To be called by every rank once, at the
+    /// end: a rank that cannot go on calls it early, and every call of another throws RankLost. Returns on rank 0 what
+    /// the first rank with something to say says, with its number where other ranks have nothing to say.
+    struct Ending {
+        int status = 0;
+        std::string message;
+    };
+    Ending leave(const Ending& mine);
+
+private:
+    void requireAll();
+
+    int m_rank = 0, m_size = 1;
+    bool m_left = false, m_lost = false;
+};
+
+} // namespace pellucid

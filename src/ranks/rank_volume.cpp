@@ -1,0 +1,128 @@
+#include "ranks/rank_volume.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "volume/excerpt.h"
+#include "volume/file_contents.h"
+#include "volume/voxel_loops.h"
+
+namespace pellucid {
+
+namespace {
+
+/// What all ranks have to agree on.
+struct OfAll {
+    double lo = std::numeric_limits<double>::infinity(), hi = -std::numeric_limits<double>::infinity();
+    std::uint64_t invalid = 0;
+    Geometry whole;
+};
+
+std::uint64_t invalidIn(const BlockVolume& block) {
+    if (block.isEmpty() || block.stored->invalidCount() == 0) return 0;
+    std::uint64_t count = 0;
+    const VoxelRegion own = block.block();
+    for (int k = own.lo.z; k < own.hi.z; ++k)
+        for (int j = own.lo.y; j < own.hi.y; ++j)
+            for (int i = own.lo.x; i < own.hi.x; ++i)
+                count += !block.stored->isValid(voxelIndex(block.stored->dims(), i - block.region.lo.x,
+                                                           j - block.region.lo.y, k - block.region.lo.z));
+    return count;
+}
+
+/// The geometry of all data, of which `volume` has the voxels from `first` on.
+Geometry wholeOf(const Volume& volume, const Int3& dims, const Int3& first) {
+    Geometry whole = volume.geometry();
+    whole.origin = whole.worldFromVoxel(-Vec3(first));
+    whole.dims = dims;
+    whole.referenceLength = whole.d0();
+    return whole;
+}
+
+} // namespace
+
+BlockVolume RankVoxels::blockOf(const Volume& volume) const {
+    BlockVolume block = m_block;
+    block.stored = volume.here();
+    return block;
+}
+
+Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like) {
+    OfAll mine;
+    mine.whole = block.whole;
+    if (!block.isEmpty() && block.stored->hasValidVoxels()) {
+        mine.lo = block.stored->dataRange().lo;
+        mine.hi = block.stored->dataRange().hi;
+    }
+    mine.invalid = invalidIn(block);
+    Volume::Distributed parts;
+    const auto all = gatherValues(ranks, mine);
+    ValueRange range{all[0].lo, all[0].hi};
+    for (const OfAll& other : all) {
+        range.lo = std::min(range.lo, other.lo);
+        range.hi = std::max(range.hi, other.hi);
+        parts.invalidCount += other.invalid;
+    }
+    if (!(range.lo <= range.hi)) range = {0, 0};
+    block.whole = all[0].whole; // the same bits for all
+    parts.type = like.sampleType();
+    parts.dataRange = range;
+    parts.missing = like.missing();
+    if (!block.isEmpty())
+        parts.here =
+            range.lo < range.hi ? std::make_shared<const Volume>(block.stored->withRange(range)) : block.stored;
+    block.stored.reset();
+    const Geometry whole = block.whole;
+    parts.elsewhere = std::make_shared<const RankVoxels>(ranks, std::move(block));
+    Volume volume(whole, std::move(parts));
+    volume.title = like.title;
+    volume.format = like.format;
+    volume.notices = like.notices;
+    return volume;
+}
+
+Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLayout& layout, const JobControl& job) {
+    if (source.isSample()) {
+        // Made by a rule: each rank makes all of it, and keeps its block.
+        Volume all = loadHere(source, job);
+        if (ranks.size() == 1 || all.size() < layout.smallest) return all;
+        const auto whole = std::make_shared<const Volume>(std::move(all));
+        const Decomposition blocks(whole->dims(), ranks.size());
+        return volumeOfBlocks(ranks, blockOf(whole, blocks, ranks.rank(), layout.ghosts), *whole);
+    }
+    const FileContents contents = contentsOf(source, job);
+    const VoxelRegion all = source.region.value_or(VoxelRegion{Int3(0), contents.dims});
+    const Int3 dims = all.hi - all.lo;
+    const bool known = !isEmpty(all) && voxelCount(dims) >= layout.smallest;
+    if (ranks.size() == 1 || !known) return loadHere(source, job);
+    if (source.downsample > 1)
+        throw UsageError("ranks read data as they are", "--downsample", "leave it out, or use pellucid-cli");
+
+    BlockVolume block;
+    block.blocks = Decomposition(dims, ranks.size());
+    block.own = ranks.rank();
+    block.region = widened(block.block(), layout.ghosts, dims);
+    VolumeSource part = source;
+    part.downsample = 1;
+    part.range.reset();
+    part.axes.reset();
+    // A rank without a block reads a voxel, for what else there is to know.
+    const bool none = isEmpty(block.region);
+    const VoxelRegion read = none ? VoxelRegion{Int3(0), Int3(1)} : block.region;
+    part.region = VoxelRegion{all.lo + read.lo, all.lo + read.hi};
+    Volume volume = loadHere(part, job);
+    block.whole = wholeOf(volume, dims, read.lo);
+    std::erase_if(volume.notices, [](const std::string& notice) { return notice.starts_with("a region of "); });
+    const auto stored = std::make_shared<const Volume>(std::move(volume));
+    if (!none) block.stored = stored;
+    Volume result = volumeOfBlocks(ranks, std::move(block), *stored);
+    if (source.region) {
+        result.excerpt = Excerpt{contents.dims, all, 1, false};
+        result.notices.insert(result.notices.begin(),
+                              "a region of " + dimsText(dims) + " of " + dimsText(contents.dims) + " voxels is shown");
+    }
+    if (source.range) result = result.withRange(*source.range);
+    return result;
+}
+
+} // namespace pellucid

@@ -1,0 +1,48 @@
+// Volumes whose blocks lie on the ranks of a group.
+#pragma once
+
+#include <memory>
+
+#include "ranks/block_volume.h"
+#include "ranks/communicator.h"
+#include "volume/loader.h"
+
+namespace pellucid {
+
+/// How much of a volume ranks keep around their blocks, and from what size on there are blocks.
+struct RankLayout {
+    Int3 ghosts{kRayGhosts, kRayGhosts, kRayGhosts}; ///< voxels along each axis; of saliency more
+    /// Volumes of fewer voxels are on every rank as a whole: blocks of them would be mostly what lies around them, and
+    /// they are measured more carefully, along lines that cross all of them.
+    std::size_t smallest = 128 * 128 * 128;
+};
+
+/// The block that a rank has of a volume.
+class RankVoxels final : public VoxelsElsewhere {
+public:
+    RankVoxels(Communicator& ranks, BlockVolume block) : m_ranks(ranks), m_block(std::move(block)) {}
+    VoxelRegion own() const override { return m_block.block(); }
+    VoxelRegion stored() const override { return m_block.region; }
+    std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) const override {
+        return m_ranks.gather(bytes);
+    }
+    void sum(std::span<double> values) const override { m_ranks.sum(values); }
+
+    Communicator& ranks() const { return m_ranks; }
+    /// With the voxels of `volume`, which this belongs to, in its window.
+    BlockVolume blockOf(const Volume& volume) const;
+
+private:
+    Communicator& m_ranks;
+    BlockVolume m_block; ///< without voxels
+};
+
+/// The volume of a block on each rank, as loadVolume() gives it. Collective.
+Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like);
+
+/// Each rank reads its block and the voxels around it, and nothing else of the file; files that are packed, and
+/// built-in samples, are gone through by all. Collective: throws on all ranks where it throws on one.
+Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLayout& layout,
+                   const JobControl& job = {});
+
+} // namespace pellucid

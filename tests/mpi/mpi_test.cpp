@@ -1,0 +1,160 @@
+// The real pellucid-mpi under mpirun, against pellucid-cli.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <csignal>
+#include <thread>
+
+#include "cli_runner.h"
+
+using namespace pellucid::test;
+using nlohmann::json;
+
+namespace {
+
+/// More ranks than cores, as root, without binding to cores: what a test machine is.
+const Words kMpirun{"OMPI_ALLOW_RUN_AS_ROOT=1",
+                    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                    "OMPI_MCA_rmaps_base_oversubscribe=1",
+                    "OMPI_MCA_hwloc_base_binding_policy=none",
+                    "OMPI_MCA_orte_abort_print_stack=0",
+                    PELLUCID_MPIRUN};
+
+Words onRanks(int count, const Words& words) {
+    return kMpirun + Words{"-n", std::to_string(count), PELLUCID_MANY} + words + Words{"--threads", "1"};
+}
+json ofMany(const Workshop& shop, int count, const Words& words) { return shop.json(onRanks(count, words)); }
+json ofOne(const Workshop& shop, const Words& words) { return shop.json(Words{PELLUCID_ONE} + words); }
+
+/// The largest difference of a number of all features.
+double difference(const json& a, const json& b, const char* key) {
+    REQUIRE(a["features"].size() == b["features"].size());
+    double most = 0;
+    for (std::size_t i = 0; i < a["features"].size(); ++i)
+        most = std::max(most, std::abs(a["features"][i][key].get<double>() - b["features"][i][key].get<double>()));
+    return most;
+}
+
+/// A raw file of 8-bit values, 150 × 140 × 132: shells around a place off its middle, and something all over.
+Words rawVolume(const Workshop& shop) {
+    std::string bytes;
+    for (int k = 0; k < 132; ++k)
+        for (int j = 0; j < 140; ++j)
+            for (int i = 0; i < 150; ++i) {
+                const double r = std::sqrt((i - 60.0) * (i - 60) + (j - 80.0) * (j - 80) + (k - 60.0) * (k - 60));
+                const int hash = (i * 7919 + j * 104729 + k * 1299709) % 17;
+                bytes += static_cast<char>(r < 25 ? 200 + hash : r < 50 ? 110 + hash : r < 70 ? 60 + hash : hash);
+            }
+    shop.write("volume.raw", bytes);
+    return {"volume.raw", "--raw", "150,140,132,u8", "--spacing", "1,1.2,0.9"};
+}
+
+} // namespace
+
+TEST_CASE("ranks measure what one process measures", "[mpi]") {
+    const Workshop shop;
+    const Words volume = rawVolume(shop), tf{"--tf", "tents:4:0.3"};
+    for (const Words& view : {Words{"--view", "30,20"}, Words{"--view", "200,-65"}, Words{"--view", "45,35,2.6"},
+                              Words{"--view", "90,0", "--orthographic"}}) {
+        const Words words = Words{"measure"} + volume + tf + view + Words{"--jacobian"};
+        const json one = ofOne(shop, words);
+        for (const int count : {1, 2, 3, 8}) {
+            INFO(view[1] << ", " << count << " ranks");
+            const json many = ofMany(shop, count, words);
+            CHECK(difference(one, many, "vws") < 1e-4);
+            CHECK(difference(one, many, "visibility") < 1e-4);
+            CHECK(difference(one, many, "cover") < 1e-4);
+            CHECK(std::abs(one["coverage"].get<double>() - many["coverage"].get<double>()) < 1e-4);
+            CHECK(one["volume"] == many["volume"]);
+            double largest = 0, most = 0;
+            for (std::size_t i = 0; i < one["jacobian"].size(); ++i)
+                for (std::size_t j = 0; j < one["jacobian"].size(); ++j) {
+                    const double d = one["jacobian"][i][j].get<double>();
+                    largest = std::max(largest, std::abs(d));
+                    most = std::max(most, std::abs(many["jacobian"][i][j].get<double>() - d));
+                }
+            CHECK(most < 1e-3 * largest);
+        }
+    }
+}
+
+TEST_CASE("a volume of few voxels gives the same figures on ranks, bit by bit", "[mpi]") {
+    const Workshop shop;
+    const Words words{"measure", "sample:shells", "--size", "40", "--tf", "tents:3", "--view", "30,20"};
+    const json one = ofOne(shop, words), many = ofMany(shop, 3, words);
+    CHECK(one["features"] == many["features"]);
+    CHECK(one["visibility_histogram"] == many["visibility_histogram"]);
+}
+
+TEST_CASE("ranks optimize as one process does", "[mpi]") {
+    const Workshop shop;
+    const Words volume = rawVolume(shop),
+                words = Words{"optimize"} + volume +
+                        Words{"--tf", "tents:4:0.3", "--view", "30,20", "--target", "3,2,2,1", "--out-tf"};
+    const json one = ofOne(shop, words + Words{"one.tf.json"});
+    const json many = ofMany(shop, 4, words + Words{"many.tf.json"});
+    CHECK(many["converged"] == one["converged"]);
+    CHECK(many["stopped"] == one["stopped"]);
+    CHECK(std::abs(many["iterations"].get<int>() - one["iterations"].get<int>()) <= 1);
+    const auto best = [](const json& run, const char* key) { return run[key][run["best"].get<std::size_t>()]; };
+    CHECK(std::abs(best(many, "objective").get<double>() - best(one, "objective").get<double>()) < 1e-3);
+    // What it has come to is what one process measures of it.
+    const json measured = ofOne(shop, Words{"measure"} + volume + Words{"--tf", "many.tf.json", "--view", "30,20"});
+    for (std::size_t i = 0; i < 4; ++i)
+        CHECK(std::abs(measured["features"][i]["vws"].get<double>() - best(many, "vws")[i].get<double>()) < 1e-4);
+}
+
+TEST_CASE("ranks propose what one process proposes", "[mpi]") {
+    const Workshop shop;
+    const Words words = Words{"measure"} + rawVolume(shop);
+    const json one = ofOne(shop, words), many = ofMany(shop, 3, words);
+    REQUIRE(one["features"].size() == many["features"].size());
+    for (std::size_t i = 0; i < one["features"].size(); ++i) {
+        CHECK(one["features"][i]["name"] == many["features"][i]["name"]);
+        CHECK(one["features"][i]["range"] == many["features"][i]["range"]);
+    }
+    CHECK(difference(one, many, "opacity") < 1e-9);
+    CHECK(difference(one, many, "vws") < 1e-4);
+    CHECK(one["camera"] == many["camera"]);
+}
+
+TEST_CASE("what goes wrong on ranks is said once", "[mpi]") {
+    const Workshop shop;
+    const auto lines = [](const std::string& text, const std::string& part) {
+        std::size_t count = 0;
+        for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+        return count;
+    };
+    const Outcome usage = shop.run(onRanks(3, {"measure", "sample:shells", "--view", "nonsense"}));
+    CHECK(usage.status == 2);
+    CHECK(lines(usage.err, "pellucid-mpi: error:") == 1);
+    const Outcome missing =
+        shop.run(onRanks(3, {"measure", "nothing.raw", "--raw", "200,200,200,u8", "--tf", "tents:3"}));
+    CHECK(missing.status == 1);
+    CHECK(lines(missing.err, "pellucid-mpi: error:") == 1);
+    CHECK(missing.out.empty());
+    shop.write("short.raw", std::string(150 * 140 * 100, 'x'));
+    const Outcome cut = shop.run(onRanks(2, {"measure", "short.raw", "--raw", "150,140,132,u8", "--tf", "tents:3"}));
+    CHECK(cut.status == 1);
+    CHECK(lines(cut.err, "pellucid-mpi: error: the file has 2100000 bytes") == 1);
+}
+
+TEST_CASE("a rank that is killed takes the others with it, and no file is left", "[mpi]") {
+    const Workshop shop;
+    const Words words = Words{"optimize"} + rawVolume(shop) +
+                        Words{"--tf", "tents:4:0.3", "--target", "1,1,2,3", "--progress", "--out-tf", "out.tf.json"};
+    for (const char* phase : {"loading", "saliency", "optimizing"}) {
+        INFO(phase);
+        Running running(shop, onRanks(3, words));
+        REQUIRE(running.waitForError(phase));
+        // The last of the ranks: pgrep lists them in the order of their start.
+        shop.run({"sh", "-c", "kill -9 $(pgrep -f '^" PELLUCID_MANY "' | tail -1)"});
+        const auto start = std::chrono::steady_clock::now();
+        const Outcome outcome = running.finish();
+        CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(60)); // 10 at rest
+        CHECK(outcome.status != 0);
+        CHECK(outcome.out.empty());
+        CHECK(!outcome.err.empty());
+        CHECK(shop.list() == std::vector<std::string>{"volume.raw"});
+    }
+}
