@@ -102,16 +102,22 @@ struct PixelRay {
     double first, exit; ///< t of the first step, and where it leaves
 };
 
-/// Calls take(pixel, ray) for the rays through a picture of `side` × `side` pixels that meet anything; rows on
-/// different threads. Each ray begins elsewhere, by `seed`, so that steps of several voxels hit thin things on average
-/// as often as their thickness says. Throws Cancelled.
+/// Rows of a picture.
+struct RayRows {
+    int first = 0, end = 0;
+};
+
+/// Calls take(pixel, ray) for the rays through these rows of a picture of `side` × `side` pixels that meet anything;
+/// rows on different threads. Each ray begins elsewhere, by `seed`, so that steps of several voxels hit thin things on
+/// average as often as their thickness says. Throws Cancelled.
 template <class Take>
-void forEachRayOf(const Geometry& geometry, const View& view, int side, double step, int seed, const JobControl& job,
-                  const Take& take) {
+void forEachRayOf(const Geometry& geometry, const View& view, int side, const RayRows& rows, double step, int seed,
+                  const JobControl& job, const Take& take) {
     const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
-    parallelFor(static_cast<std::size_t>(side), [&](std::size_t row) {
+    parallelFor(static_cast<std::size_t>(rows.end - rows.first), [&](std::size_t n) {
         job.throwIfStopped();
-        const int y = static_cast<int>(row);
+        const int y = rows.first + static_cast<int>(n);
+        const auto row = static_cast<std::size_t>(y);
         for (int x = 0; x < side; ++x) {
             const Ray world = pixelRay(view.camera, x + 0.5, y + 0.5, side, side);
             const Ray ray = inVoxels(world, geometry);
@@ -129,8 +135,8 @@ void forEachRayOf(const Geometry& geometry, const View& view, int side, double s
 /// The same with a sampler: take(pixel, ray, sampler). Of a volume on several ranks each is called for all rays, and
 /// the sampler tells which places along them are its own; shareRays() then brings together what they have found.
 template <class Take>
-void forEachRay(const Volume& volume, const View& view, int side, double step, int seed, const JobControl& job,
-                const Take& take) {
+void forEachRay(const Volume& volume, const View& view, int side, const RayRows& rows, double step, int seed,
+                const JobControl& job, const Take& take) {
     const VoxelsElsewhere* const elsewhere = volume.elsewhere();
     const Volume* const part = elsewhere != nullptr ? volume.here().get() : &volume;
     if (part == nullptr) return;
@@ -139,7 +145,7 @@ void forEachRay(const Volume& volume, const View& view, int side, double step, i
     std::visit(
         [&](const auto& samples) {
             const BinSampler sampler(*part, samples, first, own, volume.dims());
-            forEachRayOf(volume.geometry(), view, side, step, seed, job,
+            forEachRayOf(volume.geometry(), view, side, rows, step, seed, job,
                          [&](std::size_t pixel, const PixelRay& ray) { take(pixel, ray, sampler); });
         },
         part->samples());

@@ -29,15 +29,16 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
         std::uint16_t step, bin;
     };
     std::vector<std::vector<Step>> rows(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
-    forEachRay(volume, view, pixels, step, 1, job, [&](std::size_t pixel, const PixelRay& r, const auto& sampler) {
-        std::uint16_t n = 0;
-        for (double t = r.first; t < r.exit; t += step, ++n) {
-            const Vec3 at = r.ray.origin + t * r.ray.direction;
-            if (!sampler.answersFor(sampler.nearest(at))) continue;
-            if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
-                rows[pixel].push_back({n, static_cast<std::uint16_t>(bin)});
-        }
-    });
+    forEachRay(volume, view, pixels, {0, pixels}, step, 1, job,
+               [&](std::size_t pixel, const PixelRay& r, const auto& sampler) {
+                   std::uint16_t n = 0;
+                   for (double t = r.first; t < r.exit; t += step, ++n) {
+                       const Vec3 at = r.ray.origin + t * r.ray.direction;
+                       if (!sampler.answersFor(sampler.nearest(at))) continue;
+                       if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
+                           rows[pixel].push_back({n, static_cast<std::uint16_t>(bin)});
+                   }
+               });
     shareRays(volume, rows);
 
     m_begins.push_back(0);

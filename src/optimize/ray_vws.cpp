@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -75,26 +76,24 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
     };
     const auto pixels = static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays);
     std::vector<std::vector<Step>> met(pixels);
-    forEachRay(volume, View(*camera, view.clipping), rays, step, 2, job,
-               [&](std::size_t pixel, const PixelRay& r, const auto& sampler) {
-                   std::uint16_t n = 0;
-                   for (double t = r.first; t < r.exit; t += step, ++n) {
-                       const Vec3 at = r.ray.origin + t * r.ray.direction;
-                       const Int3 voxel = sampler.nearest(at);
-                       if (!sampler.answersFor(voxel)) continue;
-                       Step here{0, n, kNothing, kNothing};
-                       if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
-                           here.bin = static_cast<std::uint16_t>(bin);
-                       const std::size_t index = sampler.indexOf(voxel);
-                       if (const double s = sampler.intensityOf(index);
-                           !std::isnan(s) && features.keeps(binOfIntensity(s))) {
-                           here.binOfVoxel = static_cast<std::uint16_t>(binOfIntensity(s));
-                           here.weights = weights.units(index);
-                       }
-                       if (here.bin != kNothing || here.binOfVoxel != kNothing) met[pixel].push_back(here);
-                   }
-               });
-    shareRays(volume, met);
+    const View around(*camera, view.clipping);
+    const auto meet = [&](std::size_t pixel, const PixelRay& r, const auto& sampler) {
+        std::uint16_t n = 0;
+        for (double t = r.first; t < r.exit; t += step, ++n) {
+            const Vec3 at = r.ray.origin + t * r.ray.direction;
+            const Int3 voxel = sampler.nearest(at);
+            if (!sampler.answersFor(voxel)) continue;
+            Step here{0, n, kNothing, kNothing};
+            if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
+                here.bin = static_cast<std::uint16_t>(bin);
+            const std::size_t index = sampler.indexOf(voxel);
+            if (const double s = sampler.intensityOf(index); !std::isnan(s) && features.keeps(binOfIntensity(s))) {
+                here.binOfVoxel = static_cast<std::uint16_t>(binOfIntensity(s));
+                here.weights = weights.units(index);
+            }
+            if (here.bin != kNothing || here.binOfVoxel != kNothing) met[pixel].push_back(here);
+        }
+    };
 
     // Then how much of the light reaches each voxel.
     struct OfRay {
@@ -148,13 +147,22 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
         std::ranges::stable_sort(points, {}, [](const Point& p) { return p.met.behind; });
         for (const Point& p : points) here.voxels.push_back(p.met);
     };
-    forEachRayOf(geometry, View(*camera, view.clipping), rays, step, 2, job, follow);
-    for (const OfRay& ray : all) {
-        if (ray.voxels.empty()) continue;
-        m_bins.insert(m_bins.end(), ray.bins.begin(), ray.bins.end());
-        m_binBegins.push_back(static_cast<std::uint32_t>(m_bins.size()));
-        m_voxels.insert(m_voxels.end(), ray.voxels.begin(), ray.voxels.end());
-        m_voxelBegins.push_back(static_cast<std::uint32_t>(m_voxels.size()));
+    // A part of the rows at a time: of a volume on several ranks what rays meet goes to all of them.
+    const int atOnce = volume.elsewhere() != nullptr ? std::max(1, rays / 12) : rays;
+    for (int row = 0; row < rays; row += atOnce) {
+        const RayRows rows{row, std::min(rays, row + atOnce)};
+        forEachRay(volume, around, rays, rows, step, 2, job, meet);
+        shareRays(volume, met);
+        forEachRayOf(geometry, around, rays, rows, step, 2, job, follow);
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+            std::vector<Step>().swap(met[pixel]);
+            const OfRay ray = std::exchange(all[pixel], {});
+            if (ray.voxels.empty()) continue;
+            m_bins.insert(m_bins.end(), ray.bins.begin(), ray.bins.end());
+            m_binBegins.push_back(static_cast<std::uint32_t>(m_bins.size()));
+            m_voxels.insert(m_voxels.end(), ray.voxels.begin(), ray.voxels.end());
+            m_voxelBegins.push_back(static_cast<std::uint32_t>(m_voxels.size()));
+        }
     }
 }
 

@@ -9,8 +9,8 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kTile = 64;                       ///< rays along each side
-constexpr std::size_t kBytesAtOnce = 32u << 20; ///< of depths of all tiles that are under way
+constexpr int kTile = 64;                      ///< rays along each side
+constexpr std::size_t kBytesAtOnce = 1u << 20; ///< of depths of the tiles that are under way, per rank
 
 SweepRect common(const SweepRect& a, const SweepRect& b) {
     return {std::max(a.firstRow, b.firstRow), std::min(a.endRow, b.endRow), std::max(a.firstCol, b.firstCol),
@@ -46,6 +46,9 @@ void append(std::vector<std::byte>& bytes, const RayDepths& depths, const PartHe
         const auto* first = static_cast<const std::byte*>(data);
         bytes.insert(bytes.end(), first, first + count);
     };
+    const std::size_t needed =
+        bytes.size() + sizeof head + head.rect.rays() * static_cast<std::size_t>(depths.lanes) * sizeof(float);
+    if (needed > bytes.capacity()) bytes.reserve(needed + needed / 4); // memory may be short
     add(&head, sizeof head);
     const auto cols = static_cast<std::size_t>(head.rect.endCol - head.rect.firstCol);
     for (int row = head.rect.firstRow; row < head.rect.endRow; ++row)

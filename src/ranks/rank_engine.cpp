@@ -135,19 +135,18 @@ private:
             }
             const auto layers = sweepLayers(in);
             for (std::size_t l = 0; l < layers.size(); ++l)
-                sweepLayer(in, passes[n], layers[l], order, sums,
+                sweepLayer(in, tables.usedLanes(), passes[n], layers[l], order, sums,
                            job.part(n * layers.size() + l, passes.size() * layers.size()));
         }
         m_ranks.sum(sums);
         return sums;
     }
 
-    /// Carries rays through the block, asks what the others' blocks leave of their light, and measures the block's
-    /// voxels of the layer.
-    void sweepLayer(const SweepInput& pass, const SweepPass& axes, const SweepLayer& layer,
+    /// `lanes`: that are used. Carries rays through the block, asks what the others' blocks leave of their light, and
+    /// measures the block's voxels of the layer.
+    void sweepLayer(const SweepInput& pass, int lanes, const SweepPass& axes, const SweepLayer& layer,
                     const std::vector<int>& order, std::vector<double>& sums, const JobControl& job) {
         const Int3 dims = m_block.whole.dims, whole = axes.permuted(dims);
-        const int lanes = lanesOf(pass.mode);
         const auto& blocks = m_block.blocks.blocks();
         const auto rectOf = [&](const SweepBox& window) {
             SweepInput in = pass;
@@ -162,6 +161,7 @@ private:
         if (!isEmpty(own)) {
             SweepInput in = pass;
             in.bounded = true;
+            in.keptLanes = lanes;
             in.reach = ownReach(own, whole);
             in.endRect = raysThrough(in, layer, in.reach);
             carried.through = RayDepths(in.endRect, lanes, 0);
@@ -191,6 +191,7 @@ private:
         SweepInput in = pass;
         in.window = own;
         in.bounded = true;
+        in.keptLanes = lanes;
         in.reach = reachAround(own);
         begin(in, layer, before);
         in.startRect = before.rect;

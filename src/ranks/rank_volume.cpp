@@ -106,6 +106,7 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLa
     part.downsample = 1;
     part.range.reset();
     part.axes.reset();
+    part.then = {}; // how much its block takes is known when it is there
     // A rank without a block reads a voxel, for what else there is to know.
     const bool none = isEmpty(block.region);
     const VoxelRegion read = none ? VoxelRegion{Int3(0), Int3(1)} : block.region;

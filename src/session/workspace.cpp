@@ -30,7 +30,8 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
             m_weights = {};
         }
         if (m_raysOf.volume != input.volume) releaseRays();
-        requireMemory(useUnder(settings), input.volume->title, input.volume->dimsHere(), input.volume->sampleType());
+        requireMemory(ofPartHere(useUnder(settings), *input.volume), input.volume->title, input.volume->dimsHere(),
+                      input.volume->sampleType());
         m_engine = settings.profile == Profile::Published ? makePublishedEngine(input.volume)
                                                           : makeEngine(settings.engine, input.volume, settings.quality);
         m_engineOf = wanted;

@@ -122,6 +122,8 @@ IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width) {
     return grid;
 }
 
+bool samplesAreNarrowCodes(const Volume& volume) { return asCodes(volume) != nullptr && volume.invalidCount() == 0; }
+
 std::shared_ptr<const IntensityGrid> sharedIntensityGrid(const Volume& volume) {
     SharedCodes& shared = volume.sharedCodes();
     const std::lock_guard lock(shared.mutex); // who comes second waits for the first, and takes what that made

@@ -77,6 +77,7 @@ enum class CodeWidth {
 };
 /// Narrow codes are value − lo, in the window 0 … maxCode padded samples themselves: these take no more memory.
 IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width = CodeWidth::BySize);
+bool samplesAreNarrowCodes(const Volume& volume);
 
 /// The same, made once for a volume in its window and shared by all who hold it at a time: picture and measure. Made on
 /// the calling thread; gone with the last holder. Any thread may call.

@@ -1,6 +1,7 @@
 #include "volume/memory_use.h"
 
 #include "base/memory.h"
+#include "volume/intensity_grid.h"
 
 namespace pellucid {
 
@@ -9,6 +10,13 @@ bool isLean(const Int3& dims, SampleType type) { return voxelCount(dims) >= kLea
 std::uint64_t bytesOf(const MemoryUse& use, const Int3& dims, SampleType type) {
     return static_cast<std::uint64_t>((isLean(dims, type) ? use.leanBytesPerVoxel : use.bytesPerVoxel) *
                                       static_cast<double>(voxelCount(dims)));
+}
+
+MemoryUse ofPartHere(MemoryUse use, const Volume& volume) {
+    if (volume.elsewhere() == nullptr || !isLean(volume.dims(), volume.sampleType())) return use;
+    if (volume.here() && samplesAreNarrowCodes(*volume.here())) use.leanBytesPerVoxel -= 1;
+    use.bytesPerVoxel = use.leanBytesPerVoxel;
+    return use;
 }
 
 void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims, SampleType type) {

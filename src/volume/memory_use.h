@@ -22,6 +22,9 @@ bool isLean(const Int3& dims, SampleType type);
 /// Bytes that `use` of a volume takes.
 std::uint64_t bytesOf(const MemoryUse& use, const Int3& dims, SampleType type);
 
+/// Of the part of a volume that is in this process, which is as lean as the whole.
+MemoryUse ofPartHere(MemoryUse use, const Volume& volume);
+
 /// Throws FileError where a volume in memory leaves no room for `use`: "`doing` NX x NY x NZ voxels needs …".
 void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims, SampleType type);
 /// The same for a volume to be read: `reading` bytes at most while it is read, `kept` afterwards, when `use` begins.

@@ -56,7 +56,7 @@ struct SweepReach {
     bool fromInside = false;
 };
 
-/// Rays (a, b), firstCol ≤ a < endCol, firstRow ≤ b < endRow, and numbers of each, [row][col][lanes].
+/// Rays (a, b), firstCol ≤ a < endCol, firstRow ≤ b < endRow, and numbers of each, [row][col][lanes that are kept].
 struct SweepRect {
     int firstRow = 0, endRow = 0, firstCol = 0, endCol = 0;
     bool holds(int a, int b) const { return a >= firstCol && a < endCol && b >= firstRow && b < endRow; }
@@ -131,6 +131,7 @@ struct SweepInput {
 
     // Of a block of a volume alone (docs/method.md, "Blocks of a volume").
     bool bounded = false; ///< `reach` says where rays go on, and these are given:
+    int keptLanes = 0;    ///< of the depths below: the first of all lanes, which say what there is to say
     SweepReach reach{};
     const float* startDepths = nullptr; ///< of startRect: what rays have met before; null: nothing
     SweepRect startRect;

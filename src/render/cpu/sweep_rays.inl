@@ -542,8 +542,8 @@ public:
             for (int a = h.enter.first; a < h.enter.end; ++a) {
                 if (was && a >= h.were.first && a < h.were.end) continue;
                 const float* from = m_depth + (rowOf(b) * rowRays() + static_cast<std::size_t>(a - m_a0)) * K;
-                float* there = to.depths + to.rect.at(a, b, K);
-                for (int lane = 0; lane < K; ++lane) there[lane] = from[lane];
+                float* there = to.depths + to.rect.at(a, b, m_in.keptLanes);
+                for (int lane = 0; lane < m_in.keptLanes; ++lane) there[lane] = from[lane];
             }
         }
     }
@@ -563,9 +563,9 @@ public:
     void writeDepths() const {
         for (int b = m_b0; b < m_b1; ++b) {
             const float* from = m_depth + rowOf(b) * rowRays() * K;
-            float* to = m_in.endDepths + m_in.endRect.at(m_a0, b, K);
-            const std::size_t count = static_cast<std::size_t>(m_a1 - m_a0 + 1) * K;
-            for (std::size_t i = 0; i < count; ++i) to[i] = from[i];
+            float* to = m_in.endDepths + m_in.endRect.at(m_a0, b, m_in.keptLanes);
+            for (int a = m_a0; a <= m_a1; ++a, from += K)
+                for (int lane = 0; lane < m_in.keptLanes; ++lane) *to++ = from[lane];
         }
     }
 
@@ -632,9 +632,15 @@ private:
                 float* depths = m_depth + at * kWide * K;
                 for (int n = 0; n < kWide; ++n) {
                     const int a = m_a0 + block * kWide + n;
-                    const float* from =
-                        m_in.startRect.holds(a, b) ? m_in.startDepths + m_in.startRect.at(a, b, K) : nullptr;
-                    for (int lane = 0; lane < K; ++lane) depths[n * K + lane] = from ? from[lane] : kUnknownDepth;
+                    const float* from = m_in.startRect.holds(a, b)
+                                            ? m_in.startDepths + m_in.startRect.at(a, b, m_in.keptLanes)
+                                            : nullptr;
+                    for (int lane = 0; lane < K; ++lane) {
+                        const int kept = smaller(lane, m_in.keptLanes - 1); // candidates repeat the last one
+                        depths[n * K + lane] = from == nullptr                               ? kUnknownDepth
+                                               : kMode == SweepMode::Jacobian && kept < lane ? 0.0f
+                                                                                             : from[kept];
+                    }
                 }
                 m_alive[at] = static_cast<std::uint8_t>(alive(depths));
             }

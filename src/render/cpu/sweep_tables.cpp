@@ -82,6 +82,7 @@ void SweepTables::fillCodes(const std::vector<Feature>& features, const Fill& fi
 
 SweepTables::SweepTables(std::span<const TransferFunction> tfs, const SweepCodes& codes)
     : SweepTables(tfs.size() == 1 ? SweepMode::Single : SweepMode::Batch, tfs[0].features, codes) {
+    m_used = static_cast<int>(tfs.size());
     std::vector<TfSampler> samplers(tfs.begin(), tfs.end());
     while (samplers.size() < m_lanes) samplers.push_back(samplers.back());
     fillIntegral([&](double s, double* tau) {
@@ -102,6 +103,7 @@ SweepTables::SweepTables(std::span<const TransferFunction> tfs, const SweepCodes
 SweepTables::SweepTables(const TransferFunction& tf, int firstDerivative, const SweepCodes& codes)
     : SweepTables(SweepMode::Jacobian, tf.features, codes) {
     m_firstDerivative = firstDerivative;
+    m_used = std::min(kJacobianLanes, 1 + static_cast<int>(tf.features.size()) - firstDerivative);
     const TfSampler sampler(tf), shapes(withFullPeaks(tf));
     fillIntegral([&](double s, double* tau) {
         const double a = sampler.opacity(s);

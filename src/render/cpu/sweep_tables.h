@@ -37,6 +37,8 @@ public:
     void giveTo(SweepInput& in) const;
 
     SweepMode mode() const { return m_mode; }
+    /// Lanes that say something of their own.
+    int usedLanes() const { return m_used; }
     std::size_t features() const { return m_features; }
     /// Of a kernel's sums: [features + 1][3][lanes].
     std::size_t sumCount() const { return (m_features + 1) * 3 * m_lanes; }
@@ -51,7 +53,7 @@ private:
     SweepMode m_mode;
     std::size_t m_features, m_lanes, m_codes, m_entries = 0;
     bool m_someInvalid;
-    int m_firstDerivative = 0;
+    int m_firstDerivative = 0, m_used = 1;
     float m_entryOfCode = 0;
     std::vector<std::int32_t> m_integral;
     std::vector<float> m_alpha;

@@ -1,0 +1,146 @@
+// What is found out of a volume block by block is what is found out of all of it.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <fstream>
+
+#include "ranks/rank_volume.h"
+#include "saliency/saliency_field.h"
+#include "support/random_cases.h"
+#include "support/temp_folder.h"
+#include "support/thread_ranks.h"
+#include "volume/excerpt.h"
+#include "volume/histogram.h"
+#include "volume/voxel_survey.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+
+namespace {
+
+/// `volume` on each of so many ranks: body(the rank's volume). Saliency reaches 4 voxels at most.
+template <class Body>
+void onBlocksOf(const std::shared_ptr<const Volume>& volume, int count, const Body& body) {
+    const Decomposition blocks(volume->dims(), count);
+    onRanks(count, [&](Communicator& ranks) {
+        body(ranks, volumeOfBlocks(ranks, blockOf(volume, blocks, ranks.rank(), Int3(4)), *volume));
+    });
+}
+
+} // namespace
+
+TEST_CASE("a volume of blocks has range, counts, histogram, survey and coarser copies of the whole", "[ranks]") {
+    for (const std::uint32_t number : {1u, 4u, 7u, 13u}) {
+        const RandomCase c = randomCase(number, 1.5);
+        INFO(c.describe());
+        const Histogram histogram = makeHistogram(*c.volume);
+        const VoxelSurvey survey = surveyVoxels(*c.volume);
+        const auto ends = boundaryEnds(*c.volume, survey, 0, 1e-6);
+        const Volume coarse = coarserCopy(*c.volume, 3);
+        onBlocksOf(c.volume, 5, [&](Communicator& ranks, const Volume& v) {
+            const Histogram counts = makeHistogram(v);
+            const VoxelSurvey sample = surveyVoxels(v);
+            const auto paths = boundaryEnds(v, sample, 0, 1e-6);
+            const Volume small = coarserCopy(v, 3);
+            if (ranks.rank() != 2) return;
+            CHECK(v.dataRange() == c.volume->dataRange());
+            CHECK(v.invalidCount() == c.volume->invalidCount());
+            CHECK(v.sampleType() == c.volume->sampleType());
+            CHECK(v.geometry().dims == c.volume->dims());
+            CHECK(counts.counts == histogram.counts);
+            CHECK(counts.codes == histogram.codes);
+            bool same = true;
+            for (std::size_t i = 0; i < survey.size(); ++i) {
+                same &= survey.values[i] == sample.values[i] ||
+                        (std::isnan(survey.values[i]) && std::isnan(sample.values[i]));
+                same &= survey.gradients[i] == sample.gradients[i] ||
+                        (std::isnan(survey.gradients[i]) && std::isnan(sample.gradients[i]));
+            }
+            CHECK(same);
+            REQUIRE(paths.size() == ends.size());
+            for (std::size_t i = 0; i < ends.size(); ++i) {
+                same &= paths[i].low == ends[i].low || std::isnan(ends[i].low);
+                same &= paths[i].high == ends[i].high || std::isnan(ends[i].high);
+            }
+            CHECK(same);
+            REQUIRE(small.size() == coarse.size());
+            double most = 0; // sums of floats in another order
+            for (std::size_t i = 0; i < coarse.size(); ++i)
+                if (coarse.isValid(i)) most = std::max(most, std::abs(coarse.value(i) - small.value(i)));
+            CHECK(most <= 1e-6 * std::max(std::abs(coarse.dataRange().lo), std::abs(coarse.dataRange().hi)));
+        });
+    }
+}
+
+TEST_CASE("the weights of a block are those of the whole", "[ranks]") {
+    const RandomCase c = randomCase(5, 1.5);
+    const WeightFields weights = saliencyFields(*c.volume, c.tf);
+    onBlocksOf(c.volume, 4, [&](Communicator&, const Volume& v) {
+        const WeightFields own = saliencyFields(v, c.tf);
+        if (v.here() == nullptr) return;
+        const VoxelRegion block = v.elsewhere()->own(), stored = v.elsewhere()->stored();
+        REQUIRE(own.dims() == stored.hi - stored.lo);
+        double most = 0;
+        for (int k = block.lo.z; k < block.hi.z; ++k)
+            for (int j = block.lo.y; j < block.hi.y; ++j)
+                for (int i = block.lo.x; i < block.hi.x; ++i) {
+                    const std::size_t here = voxelIndex(own.dims(), i - stored.lo.x, j - stored.lo.y, k - stored.lo.z),
+                                      there = voxelIndex(c.volume->dims(), i, j, k);
+                    for (const int a : {0, 1})
+                        most = std::max(most, static_cast<double>(std::abs(own.at(a, here) - weights.at(a, there))));
+                }
+        CHECK(most < 5e-5); // two units of what is stored
+    });
+}
+
+TEST_CASE("who asks for all voxels at once is told where they are", "[ranks]") {
+    const RandomCase c = randomCase(2, 1.5);
+    onBlocksOf(c.volume, 2, [&](Communicator&, const Volume& v) {
+        CHECK_THROWS_WITH(v.samples(), Catch::Contains("the voxels lie on several ranks"));
+        CHECK_THROWS_AS(v.value(0), Error);
+    });
+}
+
+TEST_CASE("saliency that reaches beyond what is around a block is refused", "[ranks]") {
+    const RandomCase c = randomCase(2, 2);
+    onBlocksOf(c.volume, 2, [&](Communicator&, const Volume& v) {
+        SaliencyOptions wide;
+        wide.sigma = 8;
+        CHECK_THROWS_WITH(saliencyFields(v, c.tf, wide), Catch::Contains("saliency reaches further"));
+    });
+}
+
+TEST_CASE("each rank reads its block of a file, and a broken file is an error of all", "[ranks]") {
+    const TempFolder folder;
+    const Int3 dims(40, 36, 33);
+    std::vector<std::int16_t> values(voxelCount(dims));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int16_t>(i * 7919 % 20011);
+    const std::string path = folder.path("v.raw");
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * 2));
+    VolumeSource source;
+    source.path = path;
+    source.raw = RawLayout{};
+    source.raw->dims = dims;
+    source.raw->type = SampleType::I16;
+    RankLayout layout;
+    layout.smallest = 1; // few as they are
+    const Volume whole = loadHere(source);
+    onRanks(3, [&](Communicator& ranks) {
+        const Volume v = loadOnRanks(ranks, source, layout);
+        REQUIRE(v.here() != nullptr);
+        CHECK(v.dataRange() == whole.dataRange());
+        CHECK(v.geometry().origin == whole.geometry().origin);
+        const VoxelRegion stored = v.elsewhere()->stored();
+        CHECK(voxelCount(stored.hi - stored.lo) < whole.size());
+        bool same = true;
+        for (int k = stored.lo.z; k < stored.hi.z; ++k)
+            for (int j = stored.lo.y; j < stored.hi.y; ++j)
+                for (int i = stored.lo.x; i < stored.hi.x; ++i)
+                    same &= v.here()->value(voxelIndex(v.here()->dims(), i - stored.lo.x, j - stored.lo.y,
+                                                       k - stored.lo.z)) == whole.value(voxelIndex(dims, i, j, k));
+        CHECK(same);
+    });
+    source.raw->dims.z = 34;
+    CHECK_THROWS_AS(onRanks(3, [&](Communicator& ranks) { loadOnRanks(ranks, source, layout); }), FileError);
+}
