@@ -1,5 +1,6 @@
 // pellucid-mpi: commands of pellucid-cli on volumes that no process holds as a whole. All ranks do the same; what they
 // have of a volume differs. Rank 0 alone says anything and writes files.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -50,6 +51,36 @@ Outcome runOnRanks(const Program& program, const std::vector<std::string>& argum
     return run(program, arguments);
 }
 
+/// Adds to a JSON object what the ranks have sent: the most of any, so that it can be compared with docs/scale.md.
+void addTraffic(Outcome& outcome, MpiRanks& ranks, const Traffic& sent) {
+    std::uint64_t bytes = 0, messages = 0, rounds = 0;
+    for (const Traffic& of : gatherValues(ranks, sent)) {
+        bytes = std::max(bytes, of.bytes);
+        messages = std::max(messages, of.messages);
+        rounds = std::max(rounds, of.rounds);
+    }
+    if (!outcome.answer.starts_with("{")) return;
+    Json json = Json::parse(outcome.answer);
+    json["ranks"] = {{"count", ranks.size()}, {"bytes_sent", bytes}, {"messages", messages}, {"rounds", rounds}};
+    outcome.answer = jsonText(json);
+}
+
+/// Runs the command, and agrees with the other ranks on how that ended.
+Outcome runTogether(const Program& program, const std::vector<std::string>& arguments, MpiRanks& ranks) {
+    Outcome outcome = runOnRanks(program, arguments, ranks);
+    if (outcome.status == 0) {
+        try {
+            addTraffic(outcome, ranks, ranks.traffic());
+        } catch (const RankLost&) {
+            outcome = {1, {}, {}, {}};
+        }
+    }
+    const auto ending = ranks.leave({outcome.status, outcome.error});
+    if (ending.status != 0 && outcome.status == 0) outcome = {ending.status, {}, {}, {}};
+    outcome.error = ending.message;
+    return outcome;
+}
+
 } // namespace
 
 } // namespace pellucid::cli
@@ -64,10 +95,7 @@ int main(int argc, char** argv) {
     try {
         pellucid::MpiRanks ranks(argc, argv);
         program.shows = ranks.rank() == 0;
-        cli::Outcome outcome = cli::runOnRanks(program, {argv + 1, argv + argc}, ranks);
-        const auto ending = ranks.leave({outcome.status, outcome.error});
-        if (ending.status != 0 && outcome.status == 0) outcome = {ending.status, {}, {}, {}};
-        outcome.error = ending.message;
+        const cli::Outcome outcome = cli::runTogether(program, {argv + 1, argv + argc}, ranks);
         return ranks.rank() == 0 ? cli::tell(program, outcome) : outcome.status;
     } catch (const pellucid::Error& e) {
         return cli::tell(program, {1, {}, e.what(), {}});

@@ -4,6 +4,7 @@
 #include <QAction>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QFile>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
@@ -83,4 +84,42 @@ TEST_CASE("a film of the window is saved in the background, and can be cancelled
     CHECK(cancelled.count() == 1);
     REQUIRE(waitFor([&] { return !filmsOf(w).isBusy(); }));
     CHECK(saved.count() == 1);
+}
+
+TEST_CASE("what is wrong with a film is read before its dialog comes back", "[film]") {
+    const QTemporaryDir folder;
+    OpenWindow w(16);
+    const auto visible = [](const char* name) -> QDialog* {
+        for (QWidget* widget : QApplication::topLevelWidgets())
+            if (auto* dialog = qobject_cast<QDialog*>(widget);
+                dialog != nullptr && dialog->objectName() == name && dialog->isVisible())
+                return dialog;
+        return nullptr;
+    };
+    QFile taken(folder.filePath("taken")); // a file, where a folder is wanted
+    REQUIRE(taken.open(QIODevice::WriteOnly));
+    int errors = 0, returns = 0;
+    withDialog([&](FilmDialog& dialog) {
+        dialog.findChild<QLineEdit*>("filmPath")->setText(taken.fileName());
+        // The error is alone on the screen …
+        QTimer::singleShot(0, &dialog, [&] {
+            QDialog* error = visible("errorDialog");
+            REQUIRE(error != nullptr);
+            CHECK(!dialog.isVisible());
+            ++errors;
+            // … and after it the dialog is there again, as it was filled in.
+            QTimer::singleShot(0, &dialog, [&] {
+                CHECK(dialog.isVisible());
+                CHECK(visible("errorDialog") == nullptr);
+                CHECK(dialog.findChild<QLineEdit*>("filmPath")->text() == taken.fileName());
+                ++returns;
+                dialog.reject();
+            });
+            error->accept();
+        });
+        dialog.accept();
+    });
+    w.child<QAction>("saveFilmAction").trigger();
+    CHECK(errors == 1);
+    CHECK(returns == 1);
 }
