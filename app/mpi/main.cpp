@@ -16,7 +16,7 @@ namespace pellucid::cli {
 namespace {
 
 std::vector<Command> addCommands(CLI::App& program) {
-    return {addInfo(program), addMeasure(program), addOptimize(program)};
+    return {addInfo(program), addMeasure(program), addRefine(program), addOptimize(program), addPropose(program)};
 }
 
 /// Voxels around blocks that saliency looks at: 2σ in d0, which no axis has more voxels of. Before options are parsed.

@@ -67,8 +67,8 @@ private:
 /// Throws Cancelled.
 Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job = {});
 
-/// The whole volume, wherever its voxels are, in this process, downsampled by `factor` ≥ 1, with the reference length of `whole`, so that opacities, saliency and
-/// figures mean the same in both.
+/// The whole volume, wherever its voxels are, in this process, downsampled by `factor` ≥ 1, with the reference length
+/// of `whole`, so that opacities, saliency and figures mean the same in both.
 Volume coarserCopy(const Volume& whole, int factor);
 /// Colours by voxel on the grid of coarserCopy(): each the mean over `factor` (≥ 1) voxels along each axis, fewer at
 /// the far ends.

@@ -1,8 +1,11 @@
 // The real pellucid-mpi under mpirun, against pellucid-cli.
 #include <catch2/catch.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "cli_runner.h"
@@ -116,6 +119,42 @@ TEST_CASE("ranks propose what one process proposes", "[mpi]") {
     CHECK(difference(one, many, "opacity") < 1e-9);
     CHECK(difference(one, many, "vws") < 1e-4);
     CHECK(one["camera"] == many["camera"]);
+}
+
+TEST_CASE("ranks refine and propose as one process does", "[mpi]") {
+    const Workshop shop;
+    const Words volume = rawVolume(shop);
+    for (const Words& words : {Words{"propose"} + volume, Words{"refine"} + volume + Words{"--tf", "tents:5"},
+                               Words{"refine"} + volume + Words{"--tf", "tents:5", "--intensity", "0.5"}}) {
+        json one = ofOne(shop, words), many = ofMany(shop, 3, words);
+        CHECK(many["ranks"]["count"] == 3);
+        for (const char* own : {"seconds", "ranks"}) { // all else is the same
+            one.erase(own);
+            many.erase(own);
+        }
+        CHECK(one == many);
+    }
+}
+
+TEST_CASE("ranks with different programs find out", "[mpi]") {
+    const Workshop shop;
+    std::filesystem::copy_file(PELLUCID_MANY, shop.path("other"));
+    { std::ofstream(shop.path("other"), std::ios::app | std::ios::binary) << "changed"; }
+    const Outcome outcome = shop.run(onRanks(1, {"info", "sample:shells"}) +
+                                     Words{":", "-n", "1", shop.path("other").string(), "info", "sample:shells"});
+    CHECK(outcome.status != 0);
+    CHECK(outcome.err.find("the ranks run different programs") != std::string::npos);
+}
+
+TEST_CASE("a full disk is said by the rank that writes", "[mpi]") {
+    const Workshop shop;
+    const Outcome outcome =
+        shop.run(onRanks(2, Words{"optimize"} + rawVolume(shop) +
+                                Words{"--tf", "tents:4:0.3", "--target", "3,2,2,1", "--out-tf", "/dev/full"}));
+    CHECK(outcome.status == 1);
+    CHECK(outcome.out.empty());
+    CHECK(outcome.err.find("pellucid-mpi: error: rank 0: cannot write the file (No space left on device)") !=
+          std::string::npos);
 }
 
 TEST_CASE("what goes wrong on ranks is said once", "[mpi]") {
