@@ -61,11 +61,6 @@ std::string wrapped(const std::string& help) {
     return result;
 }
 
-struct Failure {
-    int status = 1;
-    std::string message;
-};
-
 /// `--clip x:0:.5 y:0:.5` → `--clip x:0:.5 --clip y:0:.5`. A list ends where something else begins, so VOLUME may
 /// follow it.
 std::vector<std::string> withListsExpanded(const std::vector<std::string>& arguments) {
@@ -140,30 +135,30 @@ std::string lineOf(const Error& e) {
     return Error(e.problem(), e.where(), advice()).what();
 }
 
-Failure failureOf(const std::exception_ptr& thrown, const std::string& where) {
+Outcome fail(int status, std::string message) { return {status, {}, std::move(message), {}}; }
+
+Outcome failureOf(const std::exception_ptr& thrown, const std::string& where) {
     try {
         std::rethrow_exception(thrown);
     } catch (const RankLost&) {
-        return {1, {}}; // that rank says why
+        return fail(1, {}); // that rank says why
     } catch (const UsageError& e) {
-        return {2, lineOf(e)};
+        return fail(2, lineOf(e));
     } catch (const Error& e) {
-        return {1, lineOf(e)};
+        return fail(1, lineOf(e));
     } catch (const std::bad_alloc&) {
-        return {1, "out of memory, " + where + ", use a smaller volume, --size or machine with more"};
+        return fail(1, "out of memory, " + where + ", use a smaller volume, --size or machine with more");
     } catch (const std::length_error&) {
-        return {1, "out of memory, " + where + ", use a smaller volume, --size or machine with more"};
+        return fail(1, "out of memory, " + where + ", use a smaller volume, --size or machine with more");
     } catch (const std::filesystem::filesystem_error& e) {
-        return {1, e.code().message() + ", " + e.path1().string() + ", check permissions and space"};
+        return fail(1, e.code().message() + ", " + e.path1().string() + ", check permissions and space");
     } catch (const std::exception& e) {
-        return {1, std::string("unexpected failure (") + e.what() + "), " + where +
-                       ", please report it with the command line"};
+        return fail(1, std::string("unexpected failure (") + e.what() + "), " + where +
+                           ", please report it with the command line");
     } catch (...) {
-        return {1, "unexpected failure, " + where + ", please report it with the command line"};
+        return fail(1, "unexpected failure, " + where + ", please report it with the command line");
     }
 }
-
-Outcome fail(const Failure& failure) { return {failure.status, {}, oneLine(failure.message), {}}; }
 
 /// The status of a stopped command. Where both a signal and an error came, the signal is what the user did.
 int stoppedStatus() { return interruptStatus() != 0 ? interruptStatus() : 130; }
@@ -180,7 +175,7 @@ Outcome runCommand(const Program& info, const CLI::App& program, const Command& 
         Outcome outcome{0, common.json ? jsonText(answer.json) : answer.text, {}, {}};
         if (answer.failure) {
             outcome.status = 1;
-            outcome.error = oneLine(lineOf(*answer.failure));
+            outcome.error = lineOf(*answer.failure);
         } else {
             outcome.notices = std::move(answer.notices);
         }
@@ -191,7 +186,7 @@ Outcome runCommand(const Program& info, const CLI::App& program, const Command& 
     } catch (...) {
         progress.finish();
         if (interruptStatus() != 0) return {stoppedStatus(), {}, {}, {}};
-        return fail(failureOf(std::current_exception(), where));
+        return failureOf(std::current_exception(), where);
     }
 }
 
@@ -223,7 +218,7 @@ Outcome parseAndRun(const Program& info, const std::vector<std::string>& argumen
                 return {0, wrapped(parsed.front()->help(info.name)), {}, {}};
             return {0, wrapped(program.help()), {}, {}};
         }
-        return fail({2, problem(program, e) + ", " + place(program) + ", see " + place(program) + " --help"});
+        return fail(2, problem(program, e) + ", " + place(program) + ", see " + place(program) + " --help");
     }
     const auto chosen =
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
@@ -242,7 +237,7 @@ Outcome run(const Program& info, const std::vector<std::string>& arguments) {
     try {
         return parseAndRun(info, arguments);
     } catch (...) {
-        return fail(failureOf(std::current_exception(), info.name));
+        return failureOf(std::current_exception(), info.name);
     }
 }
 
@@ -253,8 +248,8 @@ int tell(const Program& info, const Outcome& outcome) {
     try {
         if (!outcome.answer.empty()) writeAnswer(outcome.answer);
     } catch (...) {
-        const Failure failure = failureOf(std::current_exception(), info.name);
-        say("error", failure.message);
+        const Outcome failure = failureOf(std::current_exception(), info.name);
+        say("error", failure.error);
         return failure.status;
     }
     if (!outcome.error.empty()) say("error", outcome.error);

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <type_traits>
+#include <span>
 #include <vector>
 
 #include <glm/common.hpp>
 
+#include "base/byte_stream.h"
 #include "base/job.h"
 #include "base/parallel.h"
 #include "render/ray_box.h"
@@ -17,7 +17,7 @@
 #include "render/view.h"
 #include "tf/transfer_function.h"
 #include "volume/noise.h"
-#include "volume/volume.h"
+#include "volume/volume_part.h"
 
 namespace pellucid {
 
@@ -54,43 +54,38 @@ struct BinFeatures {
 template <class Values>
 class BinSampler {
 public:
-    /// `part` has the voxels from `first` on; of a place the process answers that has its nearest voxel in `own`.
-    BinSampler(const Volume& part, const Values& values, const Int3& first, const VoxelRegion& own, const Int3& dims)
-        : m_volume(part), m_values(values), m_dims(part.dims()), m_first(first), m_own(own), m_last(dims - 1),
-          m_lo(part.range().lo), m_perSpan(1 / (part.range().hi - part.range().lo)),
-          m_simple(part.invalidCount() == 0 && std::isfinite(m_perSpan) && m_perSpan > 0) {}
+    /// `values` are those of `part`, of a volume of `dims` voxels; of a place the process answers that has its nearest
+    /// voxel.
+    BinSampler(const VolumePart& part, const Values& values, const Int3& dims)
+        : m_part(part), m_values(values), m_last(dims - 1), m_isAll(part.volume->dims() == dims),
+          m_lo(part.volume->range().lo), m_perSpan(1 / (part.volume->range().hi - part.volume->range().lo)),
+          m_simple(part.volume->invalidCount() == 0 && std::isfinite(m_perSpan) && m_perSpan > 0) {}
 
     Int3 nearest(const Vec3& place) const { return glm::clamp(Int3(glm::round(place)), Int3(0), m_last); }
-    bool answersFor(const Int3& voxel) const {
-        return voxel.x >= m_own.lo.x && voxel.y >= m_own.lo.y && voxel.z >= m_own.lo.z && voxel.x < m_own.hi.x &&
-               voxel.y < m_own.hi.y && voxel.z < m_own.hi.z;
-    }
-    /// Of a voxel among those that are here.
-    std::size_t indexOf(const Int3& voxel) const {
-        return voxelIndex(m_dims, voxel.x - m_first.x, voxel.y - m_first.y, voxel.z - m_first.z);
-    }
+    bool answersFor(const Vec3& place) const { return m_isAll || m_part.owns(nearest(place)); }
+    std::size_t indexOf(const Int3& voxel) const { return m_part.indexOf(voxel); }
     double intensityOf(std::size_t index) const {
-        return m_volume.intensityOfValue(static_cast<double>(m_values[index]));
+        return m_part.volume->intensityOfValue(static_cast<double>(m_values[index]));
     }
     /// Trilinear, of intensities: their bin; −1 where more than half of it is invalid.
     int at(const Vec3& place) const {
-        const Vec3 voxel = place - Vec3(m_first);
+        const Vec3 voxel = place - Vec3(m_part.first);
+        const Int3& dims = m_part.volume->dims();
         if (!m_simple) {
-            const Interpolated met = interpolateValid([&](std::size_t i) { return intensityOf(i); }, m_dims, voxel);
+            const Interpolated met = interpolateValid([&](std::size_t i) { return intensityOf(i); }, dims, voxel);
             return met.validShare < 0.5 ? -1 : binOfIntensity(met.value);
         }
         const auto intensity = [&](std::size_t i) {
             return std::clamp((static_cast<double>(m_values[i]) - m_lo) * m_perSpan, 0.0, 1.0);
         };
-        return binOfIntensity(interpolateAll(intensity, TrilinearCell(m_dims, voxel)));
+        return binOfIntensity(interpolateAll(intensity, TrilinearCell(dims, voxel)));
     }
 
 private:
-    const Volume& m_volume;
+    VolumePart m_part;
     const Values& m_values;
-    Int3 m_dims, m_first;
-    VoxelRegion m_own;
-    Int3 m_last;
+    Int3 m_last;  ///< voxel of the volume
+    bool m_isAll; ///< the part is the whole
     double m_lo, m_perSpan;
     bool m_simple; ///< all are valid, and the range is one that can be divided by
 };
@@ -137,48 +132,35 @@ void forEachRayOf(const Geometry& geometry, const View& view, int side, const Ra
 template <class Take>
 void forEachRay(const Volume& volume, const View& view, int side, const RayRows& rows, double step, int seed,
                 const JobControl& job, const Take& take) {
-    const VoxelsElsewhere* const elsewhere = volume.elsewhere();
-    const Volume* const part = elsewhere != nullptr ? volume.here().get() : &volume;
-    if (part == nullptr) return;
-    const Int3 first = elsewhere != nullptr ? elsewhere->stored().lo : Int3(0);
-    const VoxelRegion own = elsewhere != nullptr ? elsewhere->own() : VoxelRegion{Int3(0), volume.dims()};
+    const VolumePart part = partHere(volume);
+    if (part.volume == nullptr) return;
     std::visit(
         [&](const auto& samples) {
-            const BinSampler sampler(*part, samples, first, own, volume.dims());
+            const BinSampler sampler(part, samples, volume.dims());
             forEachRayOf(volume.geometry(), view, side, rows, step, seed, job,
                          [&](std::size_t pixel, const PixelRay& ray) { take(pixel, ray, sampler); });
         },
-        part->samples());
+        part.volume->samples());
 }
 
 /// Per pixel what steps of its ray have met, each Item with the number of its `step`, ascending. Of a volume on several
 /// ranks: what each has found of its own places becomes what all have found.
 template <class Item>
 void shareRays(const Volume& volume, std::vector<std::vector<Item>>& rays) {
-    static_assert(std::is_trivially_copyable_v<Item>);
     if (volume.elsewhere() == nullptr) return;
     std::vector<std::byte> mine;
-    const auto add = [&](const void* data, std::size_t count) {
-        const auto* from = static_cast<const std::byte*>(data);
-        mine.insert(mine.end(), from, from + count);
-    };
     for (std::size_t pixel = 0; pixel < rays.size(); ++pixel) {
         if (rays[pixel].empty()) continue;
-        const std::array<std::uint64_t, 2> head{pixel, rays[pixel].size()};
-        add(head.data(), sizeof head);
-        add(rays[pixel].data(), rays[pixel].size() * sizeof(Item));
+        appendBytes(mine, std::array<std::uint64_t, 2>{pixel, rays[pixel].size()});
+        appendBytes(mine, std::span<const Item>(rays[pixel]));
     }
     for (auto& ray : rays) ray.clear();
     for (const std::vector<std::byte>& bytes : volume.elsewhere()->gather(mine))
-        for (std::size_t at = 0; at < bytes.size();) {
-            std::array<std::uint64_t, 2> head;
-            std::memcpy(head.data(), bytes.data() + at, sizeof head);
-            at += sizeof head;
-            std::vector<Item>& ray = rays.at(head[0]);
-            const std::size_t before = ray.size();
-            ray.resize(before + head[1]);
-            std::memcpy(ray.data() + before, bytes.data() + at, head[1] * sizeof(Item));
-            at += head[1] * sizeof(Item);
+        for (ByteReader reader(bytes); !reader.atEnd();) {
+            const auto [pixel, count] = reader.take<std::array<std::uint64_t, 2>>();
+            std::vector<Item>& ray = rays.at(pixel);
+            ray.resize(ray.size() + count);
+            reader.take(std::span<Item>(ray).last(count));
         }
     for (auto& ray : rays) std::ranges::sort(ray, {}, &Item::step);
 }

@@ -34,7 +34,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
                    std::uint16_t n = 0;
                    for (double t = r.first; t < r.exit; t += step, ++n) {
                        const Vec3 at = r.ray.origin + t * r.ray.direction;
-                       if (!sampler.answersFor(sampler.nearest(at))) continue;
+                       if (!sampler.answersFor(at)) continue;
                        if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
                            rows[pixel].push_back({n, static_cast<std::uint16_t>(bin)});
                    }

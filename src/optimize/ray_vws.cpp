@@ -81,12 +81,11 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
         std::uint16_t n = 0;
         for (double t = r.first; t < r.exit; t += step, ++n) {
             const Vec3 at = r.ray.origin + t * r.ray.direction;
-            const Int3 voxel = sampler.nearest(at);
-            if (!sampler.answersFor(voxel)) continue;
+            if (!sampler.answersFor(at)) continue;
             Step here{0, n, kNothing, kNothing};
             if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin))
                 here.bin = static_cast<std::uint16_t>(bin);
-            const std::size_t index = sampler.indexOf(voxel);
+            const std::size_t index = sampler.indexOf(sampler.nearest(at));
             if (const double s = sampler.intensityOf(index); !std::isnan(s) && features.keeps(binOfIntensity(s))) {
                 here.binOfVoxel = static_cast<std::uint16_t>(binOfIntensity(s));
                 here.weights = weights.units(index);

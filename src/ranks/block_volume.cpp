@@ -13,10 +13,7 @@ BlockVolume blockOf(const std::shared_ptr<const Volume>& whole, const Decomposit
     block.own = own;
     block.region = widened(block.block(), ghosts, whole->dims());
     if (isEmpty(block.region)) return block;
-    ExcerptPlan plan;
-    plan.region = block.region;
-    plan.dims = block.region.hi - block.region.lo;
-    plan.excerpt = {whole->dims(), block.region, 1, false};
+    ExcerptPlan plan = planOf(block.region, whole->dims(), 1);
     plan.referenceLength = block.whole.d0();
     block.stored = std::make_shared<const Volume>(excerptOf(*whole, plan));
     return block;

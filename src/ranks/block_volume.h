@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "ranks/decomposition.h"
+#include "render/cpu/sweep.h"
 #include "volume/volume.h"
 
 namespace pellucid {
@@ -20,7 +21,8 @@ struct BlockVolume {
 };
 
 /// Voxels around a block that rays look at, along each axis.
-inline constexpr int kRayGhosts = 3;
+inline constexpr int kRayGhosts = static_cast<int>(kRayMargin);
+static_assert(kRayGhosts == kRayMargin);
 
 /// The block of a volume that is all there: what tests compare with. `ghosts` ≥ kRayGhosts.
 BlockVolume blockOf(const std::shared_ptr<const Volume>& whole, const Decomposition& blocks, int own,

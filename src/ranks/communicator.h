@@ -3,11 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
-#include <type_traits>
 #include <vector>
 
+#include "base/byte_stream.h"
 #include "base/error.h"
 
 namespace pellucid {
@@ -43,11 +42,8 @@ public:
     virtual std::vector<RankMessage> exchange(std::vector<RankMessage> messages) = 0;
     /// The elements of all ranks added up, in an order that depends on size() alone: all get the same bits.
     virtual void sum(std::span<double> values) = 0;
-    /// The bytes of rank 0, for all.
-    virtual void broadcast(std::vector<std::byte>& bytes) = 0;
     /// Those of each rank, in their order, for all.
     virtual std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) = 0;
-    virtual void barrier() = 0;
 
     const Traffic& traffic() const { return m_traffic; }
 
@@ -55,22 +51,12 @@ protected:
     Traffic m_traffic;
 };
 
-// ---- Values as bytes: all ranks run the same program on machines of one kind ----
-
-template <class T>
-std::span<const std::byte> bytesOf(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    return std::as_bytes(std::span<const T>(&value, 1));
-}
-
 /// The value of each rank.
 template <class T>
 std::vector<T> gatherValues(Communicator& ranks, const T& value) {
     std::vector<T> all;
-    for (const auto& bytes : ranks.gather(bytesOf(value))) {
-        T& one = all.emplace_back();
-        std::memcpy(&one, bytes.data(), sizeof one);
-    }
+    for (const auto& bytes : ranks.gather(std::as_bytes(std::span(&value, 1))))
+        all.push_back(ByteReader(bytes).take<T>());
     return all;
 }
 

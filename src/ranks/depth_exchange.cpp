@@ -1,21 +1,19 @@
 #include "ranks/depth_exchange.h"
 
 #include <algorithm>
-#include <map>
-
-#include "base/check.h"
+#include <tuple>
 
 namespace pellucid {
-
-namespace {
-
-constexpr int kTile = 64;                      ///< rays along each side
-constexpr std::size_t kBytesAtOnce = 1u << 20; ///< of depths of the tiles that are under way, per rank
 
 SweepRect common(const SweepRect& a, const SweepRect& b) {
     return {std::max(a.firstRow, b.firstRow), std::min(a.endRow, b.endRow), std::max(a.firstCol, b.firstCol),
             std::min(a.endCol, b.endCol)};
 }
+
+namespace {
+
+constexpr int kTile = 64;                      ///< rays along each side
+constexpr std::size_t kBytesAtOnce = 1u << 20; ///< of depths of the tiles that are under way, per rank
 
 /// Tiles of a rectangle of rays, in rows.
 class Tiles {
@@ -42,18 +40,15 @@ struct PartHead {
 };
 
 void append(std::vector<std::byte>& bytes, const RayDepths& depths, const PartHead& head) {
-    const auto add = [&](const void* data, std::size_t count) {
-        const auto* first = static_cast<const std::byte*>(data);
-        bytes.insert(bytes.end(), first, first + count);
-    };
     const std::size_t needed =
         bytes.size() + sizeof head + head.rect.rays() * static_cast<std::size_t>(depths.lanes) * sizeof(float);
     if (needed > bytes.capacity()) bytes.reserve(needed + needed / 4); // memory may be short
-    add(&head, sizeof head);
-    const auto cols = static_cast<std::size_t>(head.rect.endCol - head.rect.firstCol);
+    appendBytes(bytes, head);
+    const auto perRow =
+        static_cast<std::size_t>(head.rect.endCol - head.rect.firstCol) * static_cast<std::size_t>(depths.lanes);
     for (int row = head.rect.firstRow; row < head.rect.endRow; ++row)
-        add(depths.values.data() + depths.rect.at(head.rect.firstCol, row, depths.lanes),
-            cols * static_cast<std::size_t>(depths.lanes) * sizeof(float));
+        appendBytes(bytes,
+                    std::span(depths.values).subspan(depths.rect.at(head.rect.firstCol, row, depths.lanes), perRow));
 }
 
 /// Whether any ray of a part is handed over.
@@ -72,17 +67,12 @@ struct Part {
 
 /// The parts that a message holds.
 void readParts(const RankMessage& message, int lanes, std::vector<Part>& parts) {
-    std::size_t at = 0;
-    while (at < message.bytes.size()) {
+    for (ByteReader reader(message.bytes); !reader.atEnd();) {
         Part& part = parts.emplace_back();
         part.from = message.rank;
-        std::memcpy(&part.head, message.bytes.data() + at, sizeof part.head);
-        at += sizeof part.head;
+        part.head = reader.take<PartHead>();
         part.depths = RayDepths(part.head.rect, lanes, 0);
-        const std::size_t bytes = part.depths.values.size() * sizeof(float);
-        PELLUCID_CHECK(at + bytes <= message.bytes.size());
-        std::memcpy(part.depths.values.data(), message.bytes.data() + at, bytes);
-        at += bytes;
+        reader.take(std::span(part.depths.values));
     }
 }
 

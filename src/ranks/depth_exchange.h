@@ -8,6 +8,9 @@
 
 namespace pellucid {
 
+/// The rays that both have.
+SweepRect common(const SweepRect& a, const SweepRect& b);
+
 /// Optical depths of rays, [row][col][lanes], in units of the sweep's tables.
 struct RayDepths {
     SweepRect rect;

@@ -27,8 +27,6 @@ SweepBox boxOf(const VoxelRegion& region, const SweepPass& pass, const Int3& dim
     return box;
 }
 
-bool isEmpty(const SweepBox& box) { return box.lo[0] >= box.hi[0] || box.lo[1] >= box.hi[1] || box.lo[2] >= box.hi[2]; }
-
 /// Stretches of rays that belong to a block: each belongs to one. The outermost blocks have what lies beyond.
 SweepReach ownReach(const SweepBox& box, const Int3& whole) {
     SweepReach reach;
@@ -62,11 +60,6 @@ std::optional<SweepReach> common(const SweepReach& a, const SweepReach& b) {
         if (!(both.lo[axis] < both.hi[axis])) return {};
     }
     return both;
-}
-
-SweepRect common(const SweepRect& a, const SweepRect& b) {
-    return {std::max(a.firstRow, b.firstRow), std::min(a.endRow, b.endRow), std::max(a.firstCol, b.firstCol),
-            std::min(a.endCol, b.endCol)};
 }
 
 class RankEngine final : public VisibilityEngine {
@@ -158,26 +151,26 @@ private:
         const SweepRect wanted = rectOf(own);
 
         CarriedDepths carried;
-        if (!isEmpty(own)) {
+        if (!isEmpty(m_block.block())) {
             SweepInput in = pass;
             in.bounded = true;
             in.keptLanes = lanes;
             in.reach = ownReach(own, whole);
             in.endRect = raysThrough(in, layer, in.reach);
             carried.through = RayDepths(in.endRect, lanes, 0);
+            std::vector<SweepHandover> handovers;
             for (std::size_t b = 0; b < blocks.size(); ++b) {
+                if (static_cast<int>(b) == m_block.own || isEmpty(blocks[b])) continue;
                 const SweepBox box = boxOf(blocks[b], axes, dims);
-                if (static_cast<int>(b) == m_block.own || isEmpty(box)) continue;
-                const auto entered = common(reachAround(box), in.reach);
+                const SweepReach around = reachAround(box);
+                const auto entered = common(around, in.reach);
                 if (!entered) continue;
                 const SweepRect rays = common(raysThrough(in, layer, *entered), rectOf(box));
-                if (rays.rays() > 0)
-                    carried.handed.push_back({static_cast<int>(b), RayDepths(rays, lanes, kNotHanded)});
+                if (rays.rays() == 0) continue;
+                RayDepths depths(rays, lanes, kNotHanded);
+                handovers.push_back({around, rays, depths.values.data()}); // stays where it is when depths move
+                carried.handed.push_back({static_cast<int>(b), std::move(depths)});
             }
-            std::vector<SweepHandover> handovers;
-            for (HandedDepths& handed : carried.handed)
-                handovers.push_back({reachAround(boxOf(blocks[static_cast<std::size_t>(handed.to)], axes, dims)),
-                                     handed.depths.rect, handed.depths.values.data()});
             in.handovers = handovers.data();
             in.handoverCount = static_cast<int>(handovers.size());
             if (in.endRect.rays() > 0) {

@@ -5,7 +5,7 @@
 
 #include "volume/excerpt.h"
 #include "volume/file_contents.h"
-#include "volume/voxel_loops.h"
+#include "volume/volume_part.h"
 
 namespace pellucid {
 
@@ -21,12 +21,10 @@ struct OfAll {
 std::uint64_t invalidIn(const BlockVolume& block) {
     if (block.isEmpty() || block.stored->invalidCount() == 0) return 0;
     std::uint64_t count = 0;
-    const VoxelRegion own = block.block();
-    for (int k = own.lo.z; k < own.hi.z; ++k)
-        for (int j = own.lo.y; j < own.hi.y; ++j)
-            for (int i = own.lo.x; i < own.hi.x; ++i)
-                count += !block.stored->isValid(voxelIndex(block.stored->dims(), i - block.region.lo.x,
-                                                           j - block.region.lo.y, k - block.region.lo.z));
+    const VolumePart part{block.stored.get(), block.region.lo, block.block()};
+    part.forOwnRows(0, part.ownLayers(), [&](const Int3&, std::size_t row, int voxels) {
+        for (std::size_t i = row; i < row + static_cast<std::size_t>(voxels); ++i) count += !block.stored->isValid(i);
+    });
     return count;
 }
 
@@ -113,14 +111,17 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLa
     part.region = VoxelRegion{all.lo + read.lo, all.lo + read.hi};
     Volume volume = loadHere(part, job);
     block.whole = wholeOf(volume, dims, read.lo);
-    std::erase_if(volume.notices, [](const std::string& notice) { return notice.starts_with("a region of "); });
+    // That it is a part is no news here.
+    const std::vector<std::string> ofBlock = planOf(*part.region, contents.dims, 1).notices();
+    std::erase_if(volume.notices, [&](const std::string& notice) { return std::ranges::count(ofBlock, notice) > 0; });
     const auto stored = std::make_shared<const Volume>(std::move(volume));
     if (!none) block.stored = stored;
     Volume result = volumeOfBlocks(ranks, std::move(block), *stored);
     if (source.region) {
-        result.excerpt = Excerpt{contents.dims, all, 1, false};
-        result.notices.insert(result.notices.begin(),
-                              "a region of " + dimsText(dims) + " of " + dimsText(contents.dims) + " voxels is shown");
+        const ExcerptPlan plan = planOf(all, contents.dims, 1);
+        result.excerpt = plan.excerpt;
+        const auto said = plan.notices();
+        result.notices.insert(result.notices.begin(), said.begin(), said.end());
     }
     if (source.range) result = result.withRange(*source.range);
     return result;

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 #include <span>
 
+#include "base/byte_stream.h"
 #include "base/parallel.h"
 #include "volume/robust_range.h"
+#include "volume/volume_part.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -33,6 +34,15 @@ Values valuesOf(const T* samples, std::size_t begin, std::size_t end, std::size_
     return values;
 }
 
+/// Those of any process.
+Values ofAll(const VoxelsElsewhere& all, const Values& values) {
+    const std::vector<double> mine(values.begin(), values.end());
+    Values found;
+    for (const auto& bytes : all.gather(std::as_bytes(std::span(mine))))
+        for (ByteReader reader(bytes); !reader.atEnd();) found.insert(reader.take<double>());
+    return found;
+}
+
 /// All values, where they are few; empty where they are more than kMostValues.
 Values fewValues(const Volume& data, const VoxelSurvey& survey, const JobControl& job) {
     Values values;
@@ -44,30 +54,17 @@ Values fewValues(const Volume& data, const VoxelSurvey& survey, const JobControl
     constexpr std::size_t kMostVoxels = std::size_t{1} << 26, kPieces = 64;
     const std::size_t stride = (data.size() + kMostVoxels - 1) / kMostVoxels;
     std::vector<Values> found(kPieces);
-    if (data.elsewhere() != nullptr) {
-        // Of those of each rank, which are as many as there may be at most, or too many.
-        Values own;
-        if (data.here())
-            withSamples(*data.here(), [&](const auto& samples) {
-                own = valuesOf(samples.data(), 0, data.here()->size(), stride, data.missing());
-            });
-        std::vector<double> mine(own.begin(), own.end());
-        for (const auto& bytes : data.elsewhere()->gather(std::as_bytes(std::span(mine))))
-            for (std::size_t i = 0; i + sizeof(double) <= bytes.size(); i += sizeof(double)) {
-                double value = 0;
-                std::memcpy(&value, bytes.data() + i, sizeof value);
-                values.insert(value);
-            }
-        return values.size() <= kMostValues ? values : Values{};
-    }
-    withSamples(data, [&](const auto& samples) {
+    const Volume* const part = partHere(data).volume;
+    const auto look = [&](const auto& samples) {
         parallelFor(kPieces, [&](std::size_t p) {
             job.throwIfStopped();
-            found[p] = valuesOf(samples.data(), data.size() * p / kPieces, data.size() * (p + 1) / kPieces, stride,
+            found[p] = valuesOf(samples.data(), part->size() * p / kPieces, part->size() * (p + 1) / kPieces, stride,
                                 data.missing());
         });
-    });
+    };
+    if (part != nullptr) withSamples(*part, look);
     for (Values& piece : found) values.merge(piece);
+    if (data.elsewhere() != nullptr) values = ofAll(*data.elsewhere(), values);
     return values.size() <= kMostValues ? values : Values{};
 }
 

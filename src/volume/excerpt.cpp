@@ -13,11 +13,10 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "volume/loader.h"
+#include "volume/volume_part.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
-
-namespace {
 
 ExcerptPlan planOf(const VoxelRegion& region, const Int3& full, int factor) {
     ExcerptPlan plan;
@@ -28,8 +27,6 @@ ExcerptPlan planOf(const VoxelRegion& region, const Int3& full, int factor) {
     plan.excerpt = {full, region, factor, false};
     return plan;
 }
-
-} // namespace
 
 Geometry ExcerptPlan::geometryOf(const Geometry& full) const {
     Geometry geometry = full;
@@ -198,22 +195,20 @@ namespace {
 Samples meansOfBlocks(const Volume& whole, const ExcerptPlan& plan) {
     const std::size_t count = voxelCount(plan.dims);
     std::vector<double> found(2 * count, 0.0); // sums, then how many
-    if (const Volume* here = whole.here().get()) {
-        const VoxelRegion own = whole.elsewhere()->own(), stored = whole.elsewhere()->stored();
-        withSamples(*here, [&](const auto& values) {
-            for (int k = own.lo.z; k < own.hi.z; ++k)
-                for (int j = own.lo.y; j < own.hi.y; ++j)
-                    for (int i = own.lo.x; i < own.hi.x; ++i) {
-                        const Int3 at = Int3(i, j, k) - stored.lo, to = Int3(i, j, k) / plan.factors;
-                        const std::size_t from = voxelIndex(here->dims(), at.x, at.y, at.z);
-                        const auto value = static_cast<double>(values[from]);
-                        if (!std::isfinite(value) || (whole.missing() && value == *whole.missing())) continue;
-                        const std::size_t n = voxelIndex(plan.dims, to.x, to.y, to.z);
-                        found[n] += value;
-                        ++found[count + n];
-                    }
+    const VolumePart part = partHere(whole);
+    const auto add = [&](const auto& values) {
+        part.forOwnRows(0, part.ownLayers(), [&](const Int3& row, std::size_t first, int voxels) {
+            for (int x = 0; x < voxels; ++x) {
+                const auto value = static_cast<double>(values[first + static_cast<std::size_t>(x)]);
+                if (!std::isfinite(value) || (whole.missing() && value == *whole.missing())) continue;
+                const Int3 to = (row + Int3(x, 0, 0)) / plan.factors;
+                const std::size_t n = voxelIndex(plan.dims, to.x, to.y, to.z);
+                found[n] += value;
+                ++found[count + n];
+            }
         });
-    }
+    };
+    if (part.volume != nullptr) withSamples(*part.volume, add);
     whole.elsewhere()->sum(found);
     const auto means = [&]<class T>(T) -> Samples {
         const LayerMeans<T> mean({1, 1}, Int3(1), whole.missing());

@@ -34,6 +34,9 @@ struct ExcerptPlan {
     std::uint64_t neededAtFull = 0, available = 0; ///< bytes; of a factor that was chosen for memory
 };
 
+/// A region of data of `full` voxels, downsampled by `factor`, or by less along axes that are shorter.
+ExcerptPlan planOf(const VoxelRegion& region, const Int3& full, int factor);
+
 /// Region and factor that `source` asks for. `inFile`: where all voxels are taken, samples stay in their file. Throws
 /// UsageError for a region that does not lie in the data, FileError where memory has no room.
 ExcerptPlan planExcerpt(const VolumeSource& source, const Int3& full, SampleType type, bool inFile);

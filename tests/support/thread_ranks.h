@@ -17,14 +17,13 @@ class MeetingPoint {
 public:
     explicit MeetingPoint(int count) : m_count(count), m_boxes(static_cast<std::size_t>(count)) {}
 
-    /// Calls last() on the thread that comes last, and goes on when all have come.
-    void meet(const std::function<void()>& last = {}) {
+    /// Goes on when all have come.
+    void meet() {
         std::unique_lock lock(m_mutex);
         if (m_failed) throw RankLost();
         if (++m_waiting == m_count) {
             m_waiting = 0;
             ++m_round;
-            if (last) last();
             m_changed.notify_all();
             return;
         }
@@ -78,15 +77,12 @@ public:
     }
     void sum(std::span<double> values) override {
         std::vector<double> all(values.size(), 0.0);
-        for (const auto& bytes : gather(std::as_bytes(values)))
-            for (std::size_t i = 0; i < values.size(); ++i) {
-                double value = 0;
-                std::memcpy(&value, bytes.data() + i * sizeof value, sizeof value);
-                all[i] += value;
-            }
+        for (const auto& bytes : gather(std::as_bytes(values))) {
+            ByteReader reader(bytes);
+            for (double& value : all) value += reader.take<double>();
+        }
         std::ranges::copy(all, values.begin());
     }
-    void broadcast(std::vector<std::byte>& bytes) override { bytes = gather(bytes)[0]; }
     std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) override {
         std::vector<RankMessage> messages;
         for (int r = 0; r < m_size; ++r) messages.push_back({r, {bytes.begin(), bytes.end()}});
@@ -95,7 +91,6 @@ public:
             all[static_cast<std::size_t>(message.rank)] = std::move(message.bytes);
         return all;
     }
-    void barrier() override { m_point.meet(); }
 
 private:
     MeetingPoint& m_point;

@@ -178,18 +178,6 @@ void MpiRanks::sum(std::span<double> values) {
     require(MPI_Bcast(values.data(), count, MPI_DOUBLE, 0, MPI_COMM_WORLD), "tell all ranks");
 }
 
-void MpiRanks::broadcast(std::vector<std::byte>& bytes) {
-    requireAll();
-    const Together together;
-    std::uint64_t size = bytes.size();
-    require(MPI_Bcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD), "tell all ranks");
-    bytes.resize(size);
-    for (std::size_t at = 0; at < size; at += kMostAtOnce)
-        require(MPI_Bcast(bytes.data() + at, static_cast<int>(std::min<std::size_t>(kMostAtOnce, size - at)), MPI_BYTE,
-                          0, MPI_COMM_WORLD),
-                "tell all ranks");
-}
-
 std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> bytes) {
     requireAll();
     const Together together;
@@ -228,7 +216,5 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
     }
     return all;
 }
-
-void MpiRanks::barrier() { requireAll(); }
 
 } // namespace pellucid

@@ -22,9 +22,7 @@ public:
     int size() const override { return m_size; }
     std::vector<RankMessage> exchange(std::vector<RankMessage> messages) override;
     void sum(std::span<double> values) override;
-    void broadcast(std::vector<std::byte>& bytes) override;
     std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) override;
-    void barrier() override;
 
     /// Throws Error where ranks run different programs.
     void requireSameProgram();
