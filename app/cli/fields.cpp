@@ -11,6 +11,7 @@
 #include "prepare.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
+#include "volume/write_field.h"
 
 namespace pellucid::cli {
 
@@ -103,6 +104,7 @@ Answer run(const Options& o, Progress& progress) {
         visibility = workspace.engine(input).field(input.view, input.tf, progress.phase("visibility")).values;
     workspace.releaseEngine(); // and one file after the other: the program keeps no more fields than it needs
 
+    const VoxelsElsewhere* const elsewhere = input.volume->elsewhere();
     const OutputFolder folder(o.out);
     const JobControl writing = progress.phase("writing");
     std::string text;
@@ -113,13 +115,14 @@ Answer run(const Options& o, Progress& progress) {
         const std::string path = (fs::path(o.out) / output.file).string();
         const JobControl stop{writing.stop, {}};
         if (output.kind == FieldKind::Visibility && output.feature < 0) {
-            writeNrrd(input.volume->geometry(), visibility, path);
+            writeField(*input.volume, visibility, path);
         } else {
-            Grid<float> values =
-                dependsOnView(output.kind) ? visibility : saliencyGrid(weights, output.kind, input.settings.vws, stop);
-            if (output.kind == FieldKind::Vws) visibilityToVws(values, weights, input.settings.vws, stop);
+            Grid<float> values = dependsOnView(output.kind)
+                                     ? visibility
+                                     : saliencyGrid(weights, output.kind, input.settings.vws, stop, elsewhere);
+            if (output.kind == FieldKind::Vws) visibilityToVws(values, weights, input.settings.vws, stop, elsewhere);
             keepFeature(values, *input.volume, input.tf, output.feature, stop);
-            writeNrrd(input.volume->geometry(), values, path);
+            writeField(*input.volume, values, path);
         }
         text += "wrote " + path + "\n";
         names.push_back(path);

@@ -13,7 +13,7 @@
 #include "resolve.h"
 #include "results_json.h"
 #include "session/view_workspace.h"
-#include "tf/formats/tf_json.h"
+#include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
 
 namespace pellucid::cli {
@@ -149,7 +149,7 @@ Answer run(const Options& o, Progress& progress) {
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
-    if (o.outTf) writeTf(result.tf, *o.outTf);
+    if (o.outTf) writeTfFile(result.tf, input.volume->range(), *o.outTf);
     if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
     std::string text =
         textOf(result, namesWithEmpty(scene.tf, *scene.histogram), engine + profileText(input.settings), seconds);
@@ -194,7 +194,7 @@ Command addOptimize(CLI::App& program) {
     addRepeated(*app, "--limits", "NAME:LO:HI", o->limits, parseLimits,
                 "keep the opacity of this feature within LO and HI");
     addRepeated(*app, "--lock", "NAME", o->locked, anyText, "keep the opacity of this feature as it is");
-    addOutputFile(*app, "--out-tf", o->outTf, "write the optimized transfer function (the best one seen)");
+    addOutputFile(*app, "--out-tf", o->outTf, "write the optimized transfer function (the best one seen)" + std::string(kTfFileHelp));
     o->report.add(*app);
     addOutputFile(*app, "--out-camera", o->outCamera, "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,

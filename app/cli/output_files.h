@@ -76,6 +76,9 @@ private:
     bool m_isNew = false;
 };
 
+/// What files of transfer functions may be (writeTfFile()), for the help of options.
+inline constexpr const char* kTfFileHelp = ": *.tf.json, or *.paraview.json for ParaView to import";
+
 /// *.camera.json. Throws FileError.
 void writeCamera(const Camera& camera, const std::string& path);
 

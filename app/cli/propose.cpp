@@ -10,6 +10,7 @@
 #include "render/holder.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "tf/formats/tf_file.h"
 #include "tf/formats/tf_json.h"
 
 namespace pellucid::cli {
@@ -99,7 +100,7 @@ Answer run(const Options& o, Progress& progress) {
     const std::optional<Holder> holder = findHolder(seen, proposal.tf);
     if (holder) proposal.why.push_back(textOf(*holder));
     const double seconds = looking.seconds();
-    if (o.outTf) writeTf(proposal.tf, *o.outTf);
+    if (o.outTf) writeTfFile(proposal.tf, proposal.window, *o.outTf);
     Json json = jsonOf(proposal, sight.shares, seconds);
     json.update(jsonFromView(home.camera, volume.geometry()));
     if (holder) json["holder"] = {{"clip", clipsWithout(*holder)}, {"lost", holder->lost}};
@@ -112,7 +113,7 @@ Command addPropose(CLI::App& program) {
     CLI::App* app = program.add_subcommand("propose", "A transfer function from what the data hold, and why");
     const auto o = std::make_shared<Options>();
     o->scene.addForData(*app);
-    addOutputFile(*app, "--out-tf", o->outTf, "write the proposed transfer function");
+    addOutputFile(*app, "--out-tf", o->outTf, "write the proposed transfer function" + std::string(kTfFileHelp));
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -16,7 +16,7 @@
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
-#include "tf/formats/tf_json.h"
+#include "tf/formats/tf_file.h"
 
 namespace pellucid::cli {
 
@@ -141,7 +141,7 @@ Answer run(const Options& o, Progress& progress) {
     const MeasureInput seen = measureInput(scene);
     const RayBundle rays(*scene.volume, tf, seen.view, kCoverageRays, progress.phase("coverage"));
     remarks.dark = darkeningOf(rays, histogram, tf, result.tf, options, again);
-    if (o.outTf) writeTf(result.tf, *o.outTf);
+    if (o.outTf) writeTfFile(result.tf, scene.volume->range(), *o.outTf);
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
     addRemarks(json, remarks.outcome, remarks.dark);
     if (options.profile != Profile::Default) json["profile"] = name(options.profile);
@@ -171,7 +171,7 @@ Command addRefine(CLI::App& program) {
             }
         },
         "leave the control point at this intensity (0 to 1) as it is");
-    addOutputFile(*app, "--out-tf", o->outTf, "write the refined transfer function");
+    addOutputFile(*app, "--out-tf", o->outTf, "write the refined transfer function" + std::string(kTfFileHelp));
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

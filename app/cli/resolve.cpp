@@ -1,5 +1,7 @@
 #include "resolve.h"
 
+#include <cmath>
+
 #include "output_files.h"
 #include "render/memory_needs.h"
 #include "session/scene_data.h"
@@ -62,6 +64,8 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
             inputs.then = byPublished(work.use);
         else if (settings.engine == EngineChoice::Reference)
             inputs.then = byReference(work.use);
+        // Saliency looks 2σ far, in d0, of which no axis has more voxels.
+        inputs.then.reach = static_cast<int>(std::ceil(2 * settings.saliency.sigma));
         if (const auto notice = profileNotice(settings, options.camera)) notices.push_back(*notice);
     }
     // Frames are read later, but that no output replaces one of them is known before any work.

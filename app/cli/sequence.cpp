@@ -20,6 +20,7 @@
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
+#include "ranks/process_ranks.h"
 #include "render/feature_pictures.h"
 #include "render/memory_needs.h"
 #include "report/image_plot.h"
@@ -89,7 +90,9 @@ void check(const Options& o) {
     refuse({{o.scene.picture.transparent, "flicker cannot be measured on a transparent background",
              "--background transparent", "give a colour"},
             {o.framesPerSecond && !o.movie, "--fps needs --mp4", "--fps", "add --mp4 FILE, or leave out --fps"},
-            {o.movie && o.noPictures, "--mp4 needs the pictures", "--no-pictures", "leave out one of the two"}});
+            {o.movie && o.noPictures, "--mp4 needs the pictures", "--no-pictures", "leave out one of the two"},
+            {o.movie && ranksOfProcess() != nullptr, "ranks write no film", "--mp4",
+             "leave it out: the pictures of all frames are written without it, too"}});
     o.priority.check(o.scene.picture.size);
     if (o.movie && !hasMovieWriter())
         throw Error("ffmpeg is not installed", "--mp4",
@@ -108,13 +111,16 @@ void checkRefining(const Options& o, const Session& session) {
                          "add --mode refine, or leave it out");
 }
 
+/// Of ranks all do the same at the same time: nothing is read ahead, and no frames are made side by side.
+bool isOneOfSeveral() { return ranksOfProcess() != nullptr; }
+
 /// The frame that is read while others are computed.
 class ReadAhead {
 public:
     ReadAhead(std::shared_ptr<TimeSeries> series, ValueRange window) : m_series(std::move(series)), m_window(window) {}
 
     void begin(int frame) {
-        if (frame < 0 || frame >= m_series->size() || m_series->roomFor() < 2) return;
+        if (frame < 0 || frame >= m_series->size() || m_series->roomFor() < 2 || isOneOfSeveral()) return;
         if (m_reading.joinable()) m_reading.join();
         m_reading = std::jthread([series = m_series, window = m_window, frame](const std::stop_token& stop) {
             try {
@@ -470,7 +476,7 @@ Answer Sequence::run(const Opened& opened) {
     // Contexts of GL are not shared by threads; threads share a CPU well.
     const bool cpu = makeRenderer(m_scene.session.measure->engine, m_scene.volume)->name() == "cpu" &&
                      m_maker.workspace().engine(measureInput(m_scene)).name() != "gl";
-    const int most = cpu ? std::clamp(series.roomFor() - 1, 1, threadCount()) : 1;
+    const int most = cpu && !isOneOfSeveral() ? std::clamp(series.roomFor() - 1, 1, threadCount()) : 1;
     m_sideBySide = std::vector<Workspace>(static_cast<std::size_t>(most));
     std::vector<Frame> batch;
     for (int number = m_start; number < series.size(); ++number) {

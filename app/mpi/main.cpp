@@ -1,36 +1,20 @@
 // pellucid-mpi: commands of pellucid-cli on volumes that no process holds as a whole. All ranks do the same; what they
 // have of a volume differs. Rank 0 alone says anything and writes files.
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 
 #include "base/atomic_file.h"
 #include "program.h"
 #include "ranks/mpi/mpi_communicator.h"
 #include "ranks/process_ranks.h"
 #include "ranks/rank_volume.h"
-#include "saliency/saliency_field.h"
 
 namespace pellucid::cli {
 
 namespace {
 
 std::vector<Command> addCommands(CLI::App& program) {
-    return {addInfo(program), addMeasure(program), addRefine(program), addOptimize(program), addPropose(program)};
-}
-
-/// Voxels around blocks that saliency looks at: 2σ in d0, which no axis has more voxels of. Before options are parsed.
-int ghostsFor(const std::vector<std::string>& arguments) {
-    double sigma = SaliencyOptions().sigma;
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-        std::string text;
-        if (arguments[i] == "--sigma" && i + 1 < arguments.size()) text = arguments[i + 1];
-        if (arguments[i].starts_with("--sigma=")) text = arguments[i].substr(8);
-        char* end = nullptr;
-        if (const double value = std::strtod(text.c_str(), &end); end != text.c_str() && value > 0 && value <= 8)
-            sigma = value;
-    }
-    return std::max(kRayGhosts, static_cast<int>(std::ceil(2 * sigma)));
+    return {addInfo(program),     addMeasure(program), addFields(program), addRefine(program),  addPropose(program),
+            addOptimize(program), addViews(program),   addRender(program), addSequence(program)};
 }
 
 Outcome runOnRanks(const Program& program, const std::vector<std::string>& arguments, MpiRanks& ranks) {
@@ -43,11 +27,8 @@ Outcome runOnRanks(const Program& program, const std::vector<std::string>& argum
     }
     setRanksOfProcess(&ranks);
     keepWrittenFiles(ranks.rank() == 0);
-    RankLayout layout;
-    layout.ghosts = Int3(ghostsFor(arguments));
-    setVolumeLoader([&ranks, layout](const VolumeSource& source, const JobControl& job) {
-        return loadOnRanks(ranks, source, layout, job);
-    });
+    setVolumeLoader(
+        [&ranks](const VolumeSource& source, const JobControl& job) { return loadOnRanks(ranks, source, {}, job); });
     return run(program, arguments);
 }
 

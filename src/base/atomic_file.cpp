@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/file_watch.h"
+#include "base/joint_file.h"
 #include "base/text.h"
 #include "base/write_errors.h"
 
@@ -130,6 +132,23 @@ std::atomic<bool> g_keeps = true;
 
 void keepWrittenFiles(bool keep) { g_keeps = keep; }
 
+namespace {
+
+/// Names for new files in the folder of `target`: another one each time.
+std::string temporaryBeside(const fs::path& target) {
+    static std::atomic<unsigned> s_count = 0; // two threads may write the same file; the last one wins, whole
+    return (folderOf(target) / (".pellucid-" + std::to_string(getpid()) + "-" + std::to_string(s_count++) + ".part"))
+        .string();
+}
+
+/// A file that is replaced hands on its permissions.
+void takePermissions(int descriptor, const fs::path& target) {
+    struct stat old {};
+    if (stat(target.c_str(), &old) == 0) static_cast<void>(fchmod(descriptor, old.st_mode & 0777));
+}
+
+} // namespace
+
 void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write) {
     requireWritable(path);
     tellOfWriting(path);
@@ -141,11 +160,8 @@ void writeAtomically(const std::string& path, const std::function<void(OutputFil
         return file.close(false);
     }
     const fs::path target = behindLinks(path);
-    static std::atomic<unsigned> s_count = 0; // two threads may write the same file; the last one wins, whole
     for (;;) {
-        const std::string temporary =
-            (folderOf(target) / (".pellucid-" + std::to_string(getpid()) + "-" + std::to_string(s_count++) + ".part"))
-                .string();
+        const std::string temporary = temporaryBeside(target);
         const Unfinished entry(temporary);
         const int descriptor =
             uninterrupted([&] { return open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
@@ -153,8 +169,7 @@ void writeAtomically(const std::string& path, const std::function<void(OutputFil
         OutputFile file(descriptor, path);
         if (descriptor < 0) throw cannotWrite(path, errno);
         try {
-            struct stat old {};
-            if (stat(target.c_str(), &old) == 0) static_cast<void>(fchmod(descriptor, old.st_mode & 0777));
+            takePermissions(descriptor, target);
             write(file);
             file.close(true);
             if (std::rename(temporary.c_str(), target.c_str()) != 0) throw cannotWrite(path, errno);
@@ -164,6 +179,68 @@ void writeAtomically(const std::string& path, const std::function<void(OutputFil
         }
         return;
     }
+}
+
+JointFile::~JointFile() {
+    if (m_descriptor >= 0) ::close(m_descriptor);
+}
+
+void JointFile::writeAt(std::uint64_t offset, const void* data, std::size_t bytes) {
+    const char* from = static_cast<const char*>(data);
+    while (bytes > 0) {
+        const ssize_t written =
+            uninterrupted([&] { return pwrite(m_descriptor, from, bytes, static_cast<off_t>(offset)); });
+        if (written < 0) throw cannotWrite(m_path, errno);
+        from += written;
+        offset += static_cast<std::uint64_t>(written);
+        bytes -= static_cast<std::size_t>(written);
+    }
+}
+
+void writeJointly(const std::string& path, std::uint64_t bytes, const GatherBytes& gather,
+                  const std::function<void(JointFile&)>& write) {
+    requireWritable(path);
+    tellOfWriting(path);
+    if (isWrittenDirectly(typeOf(path)))
+        throw FileError("several processes cannot write this together", path, "name a file");
+    const fs::path target = behindLinks(path);
+    const bool makes = g_keeps;
+    JointFile file(path);
+    std::string temporary = makes ? temporaryBeside(target) : std::string();
+    std::optional<Unfinished> entry;
+    if (makes) entry.emplace(temporary);
+    try {
+        if (makes) {
+            file.m_descriptor =
+                uninterrupted([&] { return open(temporary.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); });
+            if (file.m_descriptor < 0) throw cannotWrite(path, errno);
+            takePermissions(file.m_descriptor, target);
+            // That there is no room is known before any process writes, where the disk can tell.
+            if (const int error =
+                    posix_fallocate(file.m_descriptor, 0, static_cast<off_t>(std::max<std::uint64_t>(1, bytes)));
+                error != 0 && error != EOPNOTSUPP && error != EINVAL)
+                throw cannotWrite(path, error);
+            if (ftruncate(file.m_descriptor, static_cast<off_t>(bytes)) != 0) throw cannotWrite(path, errno);
+        }
+        for (const auto& name : gather(std::as_bytes(std::span(temporary))))
+            if (!makes && !name.empty()) temporary.assign(reinterpret_cast<const char*>(name.data()), name.size());
+        if (!makes) {
+            file.m_descriptor = uninterrupted([&] { return open(temporary.c_str(), O_WRONLY | O_CLOEXEC); });
+            if (file.m_descriptor < 0)
+                throw FileError("this process cannot write the file that another one has made (" +
+                                    std::generic_category().message(errno) + ")",
+                                path, "name a folder that all processes see");
+        }
+        write(file);
+        flushToDisk(file.m_descriptor, path);
+        if (::close(std::exchange(file.m_descriptor, -1)) != 0 && errno != EINTR) throw cannotWrite(path, errno);
+        gather({}); // all are done
+        if (makes && std::rename(temporary.c_str(), target.c_str()) != 0) throw cannotWrite(path, errno);
+    } catch (...) {
+        if (makes) ::unlink(temporary.c_str());
+        throw;
+    }
+    gather({}); // it is there for all
 }
 
 void writeBytesAtomically(const std::string& path, std::span<const unsigned char> bytes) {

@@ -4,6 +4,7 @@
 #include "engines/renderer_probe.h"
 #include "ranks/process_ranks.h"
 #include "ranks/rank_engine.h"
+#include "ranks/rank_renderer.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/gl/gl_engines.h"
 
@@ -87,6 +88,11 @@ private:
 } // namespace
 
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {
+    if (Communicator* ranks = ranksOfProcess()) {
+        if (choice == EngineChoice::Gl || choice == EngineChoice::Slices)
+            throw UsageError("ranks draw by the cpu engine", "--engine", "leave it out, or use pellucid-cli");
+        return makeRendererOnRanks(*ranks, std::move(volume));
+    }
     if (choice == EngineChoice::Auto && !gpuDrawsFaster()) return makeCpuRenderer(std::move(volume));
     if (choice == EngineChoice::Auto)
         return gpuElseCpu<ImageRenderer>([&] { return std::make_unique<GlElseCpu>(volume); },

@@ -24,9 +24,10 @@ void inPieces(std::size_t count, const JobControl& job, const Body& body) {
     });
 }
 
-/// Σ of both attributes over all voxels, each times `factor(voxel)`.
+/// Σ of both attributes over all voxels, those of other processes too, each times `factor(voxel)`.
 template <class Factor>
-std::array<double, 2> sumsOf(const WeightFields& weights, const JobControl& job, const Factor& factor) {
+std::array<double, 2> sumsOf(const WeightFields& weights, const JobControl& job, const VoxelsElsewhere* elsewhere,
+                             const Factor& factor) {
     std::vector<std::array<double, 2>> slots((weights.size() + kPiece - 1) / kPiece);
     inPieces(weights.size(), {job.stop, {}}, [&](std::size_t piece, std::size_t first, std::size_t last) {
         std::array<double, 2> sum{0, 0};
@@ -40,6 +41,7 @@ std::array<double, 2> sumsOf(const WeightFields& weights, const JobControl& job,
     std::array<double, 2> all{0, 0};
     for (const auto& slot : slots)
         for (std::size_t w = 0; w < 2; ++w) all[w] += slot[w];
+    if (elsewhere != nullptr) elsewhere->sum(all);
     return all;
 }
 
@@ -57,13 +59,14 @@ std::string fileStem(FieldKind kind) {
     return stem;
 }
 
-Grid<float> saliencyGrid(const WeightFields& weights, FieldKind kind, const VwsOptions& options,
-                         const JobControl& job) {
+Grid<float> saliencyGrid(const WeightFields& weights, FieldKind kind, const VwsOptions& options, const JobControl& job,
+                         const VoxelsElsewhere* elsewhere) {
     PELLUCID_CHECK(!dependsOnView(kind));
     std::array<double, 2> u{kind == FieldKind::SaliencyBrightness ? 1.0 : 0.0,
                             kind == FieldKind::SaliencySaturation ? 1.0 : 0.0};
     if (kind == FieldKind::Saliency)
-        u = attributeWeights(sumsOf(weights, job, [](std::size_t) { return 1.0; }), options);
+        // Only whether they are 0 matters, so that voxels that two processes have may count twice.
+        u = attributeWeights(sumsOf(weights, job, elsewhere, [](std::size_t) { return 1.0; }), options);
     Grid<float> field(weights.dims());
     inPieces(field.size(), job, [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
@@ -74,10 +77,10 @@ Grid<float> saliencyGrid(const WeightFields& weights, FieldKind kind, const VwsO
 }
 
 void visibilityToVws(Grid<float>& visibility, const WeightFields& weights, const VwsOptions& options,
-                     const JobControl& job) {
+                     const JobControl& job, const VoxelsElsewhere* elsewhere) {
     PELLUCID_CHECK(visibility.dims() == weights.dims());
     const std::array<double, 2> all =
-        sumsOf(weights, job, [&](std::size_t i) { return static_cast<double>(visibility[i]); });
+        sumsOf(weights, job, elsewhere, [&](std::size_t i) { return static_cast<double>(visibility[i]); });
     const auto [u1, u2] = attributeWeights(all, options);
     const double b = all[0] > 0 ? u1 / all[0] : 0.0, s = all[1] > 0 ? u2 / all[1] : 0.0;
     inPieces(visibility.size(), job, [&](std::size_t, std::size_t first, std::size_t last) {
@@ -91,11 +94,12 @@ void visibilityToVws(Grid<float>& visibility, const WeightFields& weights, const
 void keepFeature(Grid<float>& field, const Volume& volume, const TransferFunction& tf, int feature,
                  const JobControl& job) {
     if (feature < 0) return;
-    PELLUCID_CHECK(field.dims() == volume.dims() && static_cast<std::size_t>(feature) < tf.features.size());
+    PELLUCID_CHECK(field.dims() == volume.dimsHere() && static_cast<std::size_t>(feature) < tf.features.size());
     const Feature& kept = tf.features[static_cast<std::size_t>(feature)];
+    const Volume* const here = volume.elsewhere() != nullptr ? volume.here().get() : &volume;
     inPieces(field.size(), job, [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
-            if (!kept.contains(volume.intensity(i))) field[i] = 0; // an invalid voxel's is NaN, which is in none
+            if (!kept.contains(here->intensity(i))) field[i] = 0; // an invalid voxel's is NaN, which is in none
     });
 }
 

@@ -30,15 +30,18 @@ constexpr bool dependsOnView(FieldKind kind) { return kind == FieldKind::Visibil
 
 /// One of the three of saliency, over all voxels. Where an attribute is salient nowhere, the other one alone makes the
 /// combined field (attributeWeights()).
+/// `elsewhere`: of a volume of which `weights` are a part (Volume::elsewhere()); then it is collective.
 Grid<float> saliencyGrid(const WeightFields& weights, FieldKind kind, const VwsOptions& options,
-                         const JobControl& job = {});
+                         const JobControl& job = {}, const VoxelsElsewhere* elsewhere = nullptr);
 
 /// In place, v becomes u1·v·L_b / Σ v·L_b + u2·v·L_s / Σ v·L_s, sums over all voxels, so that its sum over a feature
-/// is the feature's W_F (4.12, 4.13), with the rule of attributeWeights().
+/// is the feature's W_F (4.12, 4.13), with the rule of attributeWeights(). `elsewhere`: as above; the visibility of
+/// voxels that are another process's is 0.
 void visibilityToVws(Grid<float>& visibility, const WeightFields& weights, const VwsOptions& options,
-                     const JobControl& job = {});
+                     const JobControl& job = {}, const VoxelsElsewhere* elsewhere = nullptr);
 
-/// In place: 0 at every voxel that is not in feature `feature` of `tf`; −1: nothing changes.
+/// In place: 0 at every voxel that is not in feature `feature` of `tf`; −1: nothing changes. The field has the shape of
+/// what is here of the volume.
 void keepFeature(Grid<float>& field, const Volume& volume, const TransferFunction& tf, int feature,
                  const JobControl& job = {});
 

@@ -80,13 +80,14 @@ Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like
 }
 
 Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLayout& layout, const JobControl& job) {
+    const Int3 ghosts(std::max(kRayGhosts, source.then.reach));
     if (source.isSample()) {
         // Made by a rule: each rank makes all of it, and keeps its block.
         Volume all = loadHere(source, job);
         if (ranks.size() == 1 || all.size() < layout.smallest) return all;
         const auto whole = std::make_shared<const Volume>(std::move(all));
         const Decomposition blocks(whole->dims(), ranks.size());
-        return volumeOfBlocks(ranks, blockOf(whole, blocks, ranks.rank(), layout.ghosts), *whole);
+        return volumeOfBlocks(ranks, blockOf(whole, blocks, ranks.rank(), ghosts), *whole);
     }
     const FileContents contents = contentsOf(source, job);
     const VoxelRegion all = source.region.value_or(VoxelRegion{Int3(0), contents.dims});
@@ -99,7 +100,7 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLa
     BlockVolume block;
     block.blocks = Decomposition(dims, ranks.size());
     block.own = ranks.rank();
-    block.region = widened(block.block(), layout.ghosts, dims);
+    block.region = widened(block.block(), ghosts, dims);
     VolumeSource part = source;
     part.downsample = 1;
     part.range.reset();

@@ -9,9 +9,8 @@
 
 namespace pellucid {
 
-/// How much of a volume ranks keep around their blocks, and from what size on there are blocks.
+/// From what size on there are blocks.
 struct RankLayout {
-    Int3 ghosts{kRayGhosts, kRayGhosts, kRayGhosts}; ///< voxels along each axis; of saliency more
     /// Volumes of fewer voxels are on every rank as a whole: blocks of them would be mostly what lies around them, and
     /// they are measured more carefully, along lines that cross all of them.
     std::size_t smallest = 128 * 128 * 128;
@@ -40,8 +39,9 @@ private:
 /// The volume of a block on each rank, as loadVolume() gives it. Collective.
 Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like);
 
-/// Each rank reads its block and the voxels around it, and nothing else of the file; files that are packed, and
-/// built-in samples, are gone through by all. Collective: throws on all ranks where it throws on one.
+/// Each rank reads its block and the voxels around it that rays (kRayGhosts) and what is done next (MemoryUse::reach)
+/// look at, and nothing else of the file; files that are packed, and built-in samples, are gone through by all.
+/// Collective: throws on all ranks where it throws on one.
 Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLayout& layout,
                    const JobControl& job = {});
 

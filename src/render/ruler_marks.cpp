@@ -16,6 +16,7 @@ namespace pellucid {
 namespace {
 
 constexpr Rgb kInk{1.0, 0.85, 0.30}, kSelectedInk{0.80, 0.91, 1.0}; ///< with a dark halo seen on any ground
+constexpr double kPlateAlpha = 0.6;                                 ///< of the plate behind a label
 constexpr double kFaint = 0.4;                                      ///< alpha of what lies beside a slice
 constexpr double kRing = 3.5;    ///< radius of the ring at an end, lengths of the screen
 constexpr double kArc = 0.3;     ///< radius of an angle's arc, of the shorter leg
@@ -304,7 +305,9 @@ private:
         if (m_sheet.bottom > 2 * edgeY) middle.y = std::clamp(middle.y, edgeY, m_sheet.bottom - edgeY);
         Mark text = m_maker.textMark(AnnotationPart::Measures, shown.label, middle, Align::Middle, Align::Middle, cap);
         text.color = m_color;
-        text.haloColor = kDarkInk;
+        text.halo = 0; // a plate reads better than a rim, whatever lies below
+        m_marks.push_back(
+            m_maker.boxMark(AnnotationPart::Measures, extentOf(text).widened(0.45 * cap), kDarkInk, kPlateAlpha));
         m_marks.push_back(std::move(text));
     }
 

@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 
 #include "base/error.h"
+#include "engines/engines.h"
 #include "optimize/objective.h"
 #include "render/cpu/cpu_engine.h"
 #include "volume/excerpt.h"
@@ -39,6 +40,7 @@ void ViewWorkspace::release() {
 void ViewWorkspace::forget() {
     m_engine.reset();
     m_volume.reset();
+    m_seen.reset();
     m_weightsOf = {};
     m_weights = {};
 }
@@ -47,15 +49,15 @@ ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job)
     if (m_volume != input.volume || !m_engine) {
         forget();
         const int factor = coarseningForViews(input.volume->dims());
-        const auto coarse =
-            factor == 1 ? input.volume : std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
+        m_seen = factor == 1 ? input.volume : std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
         job.throwIfStopped();
-        m_engine = makeDraftEngine(coarse);
+        // In blocks it is measured by those who have them.
+        m_engine = m_seen->elsewhere() ? makeEngine(EngineChoice::Cpu, m_seen) : makeDraftEngine(m_seen);
         m_volume = input.volume;
     }
     if (const WeightsOf wanted(input); m_weightsOf != wanted) {
         m_weightsOf = {};
-        const Volume& volume = m_engine->volume();
+        const Volume& volume = *m_seen;
         std::optional<VoxelColors> coarse;
         if (input.colors && volume.dims() != input.volume->dims())
             coarse = coarserColors(*input.colors, coarseningForViews(input.volume->dims()));

@@ -41,6 +41,7 @@ private:
 
     std::mutex m_mutex;                     ///< whoever has stopped may still be at it while the next one begins
     std::shared_ptr<const Volume> m_volume; ///< the one that the copy was made of
+    std::shared_ptr<const Volume> m_seen;   ///< the copy, or the volume itself where that is small
     std::unique_ptr<VisibilityEngine> m_engine;
     WeightsOf m_weightsOf; ///< the volume as it was before it was made coarse
     WeightFields m_weights;

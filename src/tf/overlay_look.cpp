@@ -16,6 +16,8 @@ constexpr double kLeastSide = 0.05;
 /// Of the magnitudes of a map with two sides: so many lie below the threshold, and so many below the top.
 constexpr double kThresholdAt = 0.95, kTopAt = 0.999;
 constexpr double kThresholdOfLargest = 0.1;
+/// Of the top, at least, where a map has two sides: smooth maps are nearly 0 nearly everywhere.
+constexpr double kLeastThresholdOfTop = 0.25;
 constexpr int kColors = 32;      ///< pieces of the colour map on either side
 constexpr double kBeyond = 1e-7; ///< of the range of values: that far beyond the threshold drawing begins
 
@@ -80,7 +82,8 @@ OverlayLook usualLook(const Volume& volume, const JobControl& job) {
     if (std::min(above.size(), below.size()) <= least || !fallsFromZero(above) || !fallsFromZero(below))
         return oneSidedLook(volume.dataRange());
     std::ranges::sort(magnitudes);
-    return rounded({true, quantile(magnitudes, kThresholdAt), quantile(magnitudes, kTopAt)});
+    const double top = quantile(magnitudes, kTopAt);
+    return rounded({true, std::max(quantile(magnitudes, kThresholdAt), kLeastThresholdOfTop * top), top});
 }
 
 const ColorMap& usualColorMap(const OverlayLook& look) { return colorMapNamed(look.twoSided ? "blue-red" : "ember"); }

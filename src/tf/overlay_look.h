@@ -15,8 +15,8 @@ struct OverlayLook {
 };
 
 /// What the values of a volume propose. Two-sided where more than a twentieth of those that are not 0 lie on either
-/// side of it: from the distance from 0 that 5 % of them exceed to that which 0.1 % exceed. Else as oneSidedLook() and
-/// twoSidedLook() of their range say. Rounded to two digits.
+/// side of it: from the distance from 0 that 5 % of them exceed, and at least a quarter of the top, to that which 0.1 %
+/// exceed. Else as oneSidedLook() and twoSidedLook() of their range say. Rounded to two digits.
 OverlayLook usualLook(const Volume& volume, const JobControl& job = {});
 /// From a tenth of the largest value to it; of negative values alone, from the lowest tenth of their range on.
 OverlayLook oneSidedLook(const ValueRange& values);

@@ -13,6 +13,7 @@ struct MemoryUse {
     std::string doing; ///< "measuring"; empty: nothing
     double bytesPerVoxel = 0;
     double leanBytesPerVoxel = 0; ///< the same of volumes that isLean(); at most bytesPerVoxel
+    int reach = 0; ///< voxels along each axis, around each voxel, that it looks at; what ranks keep around their blocks
 };
 
 /// Large volumes of few different values are worked on in less memory: kLeanVoxels or more, of 8-bit samples.

@@ -259,17 +259,17 @@ std::string labelOf(const RulerReading& reading, const Geometry& geometry, doubl
     if (reading.angle) return fixedText(*reading.angle, 1) + "°";
     if (!reading.values) return {};
     if (reading.values->count == 0) return "no voxels";
-    return "mean " + numberText(reading.values->mean, span) + ", sigma " + numberText(reading.values->sigma, span);
+    return numberText(reading.values->mean, span) + " ± " + numberText(reading.values->sigma, span);
 }
 
 std::string textOf(const RulerReading& reading, const Geometry& geometry, double span) {
     if (reading.length) return plainText(*reading.length) + " " + lengthUnit(geometry);
-    std::string text = labelOf(reading, geometry, span);
-    if (!reading.values) return text;
+    if (!reading.values) return labelOf(reading, geometry, span);
     const BodyValues& v = *reading.values;
+    std::string text = "no voxels";
     if (v.count > 0)
-        text += ", " + numberText(v.lo, span) + " to " + numberText(v.hi, span) + ", " +
-                countText(v.count, "voxel", "voxels");
+        text = "mean " + numberText(v.mean, span) + ", sigma " + numberText(v.sigma, span) + ", " +
+               numberText(v.lo, span) + " to " + numberText(v.hi, span) + ", " + countText(v.count, "voxel", "voxels");
     if (v.invalid > 0) text += ", " + std::to_string(v.invalid) + " invalid";
     if (v.outside > 0)
         text += ", " + (v.outside < 0.0005 ? std::string("under 0.1") : fixedText(100 * v.outside, 1)) +

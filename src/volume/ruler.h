@@ -76,7 +76,8 @@ struct RulerReading {
 RulerReading readGeometry(const Ruler& ruler);
 RulerReading read(const Ruler& ruler, const Volume& volume, const JobControl& job = {});
 
-/// For the picture: "12.35 mm", "45.0°", "mean 103.2, sigma 12.1". `span`: the width of the range of the data.
+/// For the picture: "12.35 mm", "45.0°", mean and sigma as "103.2 ± 12.1". `span`: the width of the range of
+/// the data.
 std::string labelOf(const RulerReading& reading, const Geometry& geometry, double span);
 /// All that was found: "12.3456 mm", "mean 103.2, sigma 12.1, 80.0 to 140.0, 523 voxels, 12 % outside the volume".
 std::string textOf(const RulerReading& reading, const Geometry& geometry, double span);

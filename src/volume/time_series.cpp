@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 #include "volume/derived.h"
+#include "volume/volume_part.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -30,19 +31,28 @@ std::size_t defaultBudget() {
     return static_cast<std::size_t>(std::min<std::uint64_t>(availableMemoryBytes() / 4, kMostBudget));
 }
 
-/// Counts of valid values in equal bins of their range.
+/// Counts of valid values in equal bins of their range, of all processes.
 std::vector<std::uint32_t> valueCounts(const Volume& volume) {
     std::vector<std::uint32_t> counts(FrameSummary::kBins, 0);
     const ValueRange& range = volume.dataRange();
     const double scale = range.lo < range.hi ? FrameSummary::kBins / (range.hi - range.lo) : 0;
     const bool allValid = volume.invalidCount() == 0;
-    withSamples(volume, [&](const auto& values) {
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (!allValid && !volume.isValid(i)) continue;
-            const int bin = static_cast<int>((static_cast<double>(values[i]) - range.lo) * scale);
-            ++counts[static_cast<std::size_t>(std::min(bin, FrameSummary::kBins - 1))];
-        }
-    });
+    const VolumePart part = partHere(volume);
+    const auto count = [&](const auto& values) {
+        part.forOwnRows(0, part.ownLayers(), [&](const Int3&, std::size_t row, int voxels) {
+            for (std::size_t i = row; i < row + static_cast<std::size_t>(voxels); ++i) {
+                if (!allValid && !part.volume->isValid(i)) continue;
+                const int bin = static_cast<int>((static_cast<double>(values[i]) - range.lo) * scale);
+                ++counts[static_cast<std::size_t>(std::min(bin, FrameSummary::kBins - 1))];
+            }
+        });
+    };
+    if (part.volume != nullptr) withSamples(*part.volume, count);
+    if (const VoxelsElsewhere* elsewhere = volume.elsewhere()) {
+        std::vector<double> all(counts.begin(), counts.end()); // whole numbers that a double holds
+        elsewhere->sum(all);
+        std::ranges::transform(all, counts.begin(), [](double n) { return static_cast<std::uint32_t>(n); });
+    }
     return counts;
 }
 

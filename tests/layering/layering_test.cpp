@@ -38,6 +38,7 @@ const std::map<std::string, std::set<std::string>> kAllowed{
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "ranks", "engines", "bench", "session",
       "study", "report", "film", "cli"}},
     {"app/mpi", {"base", "volume", "tf", "saliency", "render", "ranks", "cli"}},
+    {"app/paraview", {"base", "volume", "tf", "saliency", "render", "optimize", "ranks", "session"}},
     {"app/gui",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study", "report",
       "film", "gui"}},
@@ -64,7 +65,7 @@ std::vector<Include> includesBelow(const fs::path& top) {
     for (const char* folder : {"src", "app"})
         for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
             const std::string suffix = entry.path().extension().string();
-            if (suffix != ".h" && suffix != ".cpp" && suffix != ".inl") continue;
+            if (suffix != ".h" && suffix != ".cpp" && suffix != ".inl" && suffix != ".cxx") continue;
             std::ifstream in(entry.path());
             std::string text;
             for (int line = 1; std::getline(in, text); ++line) {
@@ -180,8 +181,10 @@ std::string fault(const Include& include) {
                     startsWith(include.name, "EGL/") || startsWith(include.name, "GLES");
     if (gl && layer != "src/render/gl") return "GL outside src/render/gl";
     if (include.name == "mpi.h" && layer != "src/ranks/mpi") return "MPI outside src/ranks/mpi";
-    if (startsWith(include.name, "ranks/mpi/") && layer != "src/ranks/mpi" && layer != "app/mpi")
-        return "only pellucid-mpi may include ranks/mpi";
+    if (startsWith(include.name, "ranks/mpi/") && layer != "src/ranks/mpi" && layer != "app/mpi" &&
+        layer != "app/paraview")
+        return "only pellucid-mpi and the plugin may include ranks/mpi";
+    if (startsWith(include.name, "vtk") && layer != "app/paraview") return "VTK outside app/paraview";
     static const std::regex qt("^(Q[A-Z]|Qt[A-Z]).*");
     if (std::regex_match(include.name, qt) && layer != "app/gui") return "Qt outside app/gui";
     if (layer == "app/gui")
@@ -238,6 +241,9 @@ TEST_CASE("the rule itself catches what it should", "[layering]") {
     CHECK(fault({"src/volume/a.cpp", 1, "tf/palette.h"}) != "");
     CHECK(fault({"src/base/a.cpp", 1, "volume/grid.h"}) != "");
     CHECK(fault({"src/render/a.cpp", 1, "epoxy/gl.h"}) != "");
+    CHECK(fault({"src/volume/a.cpp", 1, "vtkImageData.h"}) != "");
+    CHECK(fault({"app/paraview/plugin/filters/a.cxx", 1, "vtkImageData.h"}) == "");
+    CHECK(fault({"app/paraview/plugin/filters/a.cxx", 1, "image_io/image_file.h"}) != "");
     CHECK(fault({"src/render/a.cpp", 1, "render/gl/gl_engines.h"}) != "");
     CHECK(fault({"src/session/a.cpp", 1, "render/gl/gl_engines.h"}) != "");
     CHECK(fault({"src/ranks/a.cpp", 1, "mpi.h"}) != "");

@@ -136,6 +136,99 @@ TEST_CASE("ranks refine and propose as one process does", "[mpi]") {
     }
 }
 
+TEST_CASE("ranks draw what one process draws", "[mpi]") {
+    const Workshop shop;
+    const Words volume = rawVolume(shop);
+    for (const Words& how :
+         {Words{"--view", "30,20"}, Words{"--view", "200,-65,2.4", "--shading"},
+          Words{"--view", "90,10", "--orthographic", "--clip", "x:0.3:1", "--background", "transparent"}}) {
+        const Words words = Words{"render"} + volume + Words{"--tf", "tents:4:0.3", "--size", "200x150", "--out"} + how;
+        const auto with = [&](const std::string& out) {
+            Words all = words;
+            all.insert(std::find(all.begin(), all.end(), "--out") + 1, out);
+            return all;
+        };
+        ofOne(shop, with("one.exr"));
+        for (const int count : {2, 5}) {
+            INFO(how[1] << ", " << count << " ranks");
+            ofMany(shop, count, with("many.exr"));
+            CHECK(ofOne(shop, {"compare", "one.exr", "many.exr"})["ssim"].get<double>() > 0.999);
+        }
+    }
+    const Outcome refused = shop.run(onRanks(2, Words{"render"} + volume + Words{"--mode", "mip", "--out", "mip.png"}));
+    CHECK(refused.status == 2);
+    CHECK(refused.err.find("--mode") != std::string::npos);
+    CHECK(!shop.has("mip.png"));
+}
+
+TEST_CASE("ranks write their parts of fields into one file", "[mpi]") {
+    const Workshop shop;
+    const Words words =
+        Words{"fields"} + rawVolume(shop) + Words{"--tf", "tents:4:0.3", "--view", "30,20", "--feature", "f3", "--out"};
+    ofOne(shop, words + Words{"one"});
+    const json many = ofMany(shop, 3, words + Words{"many"});
+    CHECK(many["files"].size() == 8);
+    for (const json& file : many["files"]) {
+        INFO(file);
+        const std::string name = std::filesystem::path(file.get<std::string>()).filename().string();
+        const auto values = [&](const std::string& folder) {
+            // All of it, and boxes within and across blocks; millimetres of the world: spacing 1, 1.2, 0.9.
+            return ofOne(shop, {"rulers", folder + "/" + name, "--box", "0,0,0:149,166.8,117.9", "--box",
+                                "40,60,30:70,120,80", "--box", "60,60,55:62,62,57"})["rulers"];
+        };
+        const json a = values("one"), b = values("many");
+        // The last 0.1 % of the light is given up at other slices.
+        const double close = 1e-3 * a[0]["range"][1].get<double>();
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            CHECK(b[i]["voxels"] == a[i]["voxels"]);
+            CHECK(std::abs(b[i]["mean"].get<double>() - a[i]["mean"].get<double>()) < 0.1 * close);
+            CHECK(std::abs(b[i]["range"][1].get<double>() - a[i]["range"][1].get<double>()) < close);
+        }
+    }
+}
+
+TEST_CASE("a rank that cannot write its part of a field is heard, and no file is left", "[mpi]") {
+    const Workshop shop;
+    const Words words =
+        Words{PELLUCID_MANY, "fields"} + rawVolume(shop) + Words{"--tf", "tents:4:0.3", "--out", "many"};
+    // Files of that rank may have 1000 blocks of 512 bytes or of 1024; a field has 11 million bytes.
+    const Outcome outcome = shop.run(kMpirun + Words{"-n", "1"} + words +
+                                     Words{":", "-n", "1", "sh", "-c", "ulimit -f 1000; exec \"$@\"", "sh"} + words);
+    CHECK(outcome.status == 1);
+    CHECK(outcome.err.find("rank 1: cannot write the file (File too large)") != std::string::npos);
+    CHECK(shop.list() == std::vector<std::string>{"volume.raw"});
+}
+
+TEST_CASE("ranks find the view that one process finds", "[mpi]") {
+    const Workshop shop;
+    const Words words =
+        Words{"views"} + rawVolume(shop) + Words{"--tf", "tents:4:0.3", "--feature", "f3", "--count", "16"};
+    const json one = ofOne(shop, words), many = ofMany(shop, 2, words);
+    for (const char* key : {"azimuth", "elevation", "value"})
+        CHECK(many["best"][key].get<double>() == Approx(one["best"][key].get<double>()).margin(1e-4));
+}
+
+TEST_CASE("ranks follow a series as one process does", "[mpi]") {
+    const Workshop shop;
+    rawVolume(shop);
+    std::string bytes = shop.read("volume.raw");
+    for (int frame = 0; frame < 3; ++frame) {
+        shop.write("f" + std::to_string(frame) + ".raw", bytes);
+        for (char& c : bytes) c = static_cast<char>(static_cast<unsigned char>(c) * 15 / 16);
+    }
+    const Words words{"sequence", "f%d.raw", "--raw",  "150,140,132,u8", "--tf",     "tents:3",
+                      "--range",  "0,220",   "--mode", "optimize",       "--target", "3,2,1",
+                      "--view",   "30,20",   "--size", "64x64",          "--out"};
+    const json one = ofOne(shop, words + Words{"one"}), many = ofMany(shop, 2, words + Words{"many"});
+    REQUIRE(one["frames"].size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(std::abs(many["frames"][i]["objective"].get<double>() - one["frames"][i]["objective"].get<double>()) <
+              1e-3);
+        const std::string name = "/frame_000" + std::to_string(i) + ".png";
+        CHECK(ofOne(shop, {"compare", "one" + name, "many" + name})["ssim"].get<double>() > 0.99);
+    }
+}
+
 TEST_CASE("ranks with different programs find out", "[mpi]") {
     const Workshop shop;
     std::filesystem::copy_file(PELLUCID_MANY, shop.path("other"));

@@ -33,6 +33,16 @@ TEST_CASE("a map of both signs gets a threshold on either side of 0", "[overlay]
     CHECK(usualColorMap(look).kind == ColorMap::Kind::Diverging);
 }
 
+TEST_CASE("a smooth map of both signs is drawn from a quarter of its top, not from where it is next to nothing",
+          "[overlay]") {
+    // One voxel in a hundred has 8 or −8; all others have a thousandth, of which 95 % of the magnitudes consist.
+    const OverlayLook look = usualLook(volumeOf([](std::size_t i) {
+        const float sign = i % 2 == 0 ? 1.0f : -1.0f;
+        return sign * ((i / 2) % 100 == 0 ? 8.0f : 0.001f);
+    }));
+    CHECK(look == OverlayLook{true, 2, 8});
+}
+
 TEST_CASE("a map of one sign is drawn from a tenth of its largest value", "[overlay]") {
     const OverlayLook look = usualLook(volumeOf([](std::size_t i) { return 50.0f * static_cast<float>(i % 41) / 40; }));
     CHECK(look == OverlayLook{false, 5, 50});

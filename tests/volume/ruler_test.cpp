@@ -237,7 +237,7 @@ TEST_CASE("texts say what was found, with units", "[ruler]") {
     const RulerReading reading{.values = valuesInSphere(numbered(g), {0, 0, 0}, 1)};
     // Values 0, 1, 10, 100 of a range of 444: mean 27.75, sigma² = (27.75² + 26.75² + 17.75² + 72.25²)/4 = 41.89².
     INFO(textOf(reading, g, 444));
-    CHECK(labelOf(reading, g, 444).starts_with("mean 27.8, sigma 41.9"));
+    CHECK(labelOf(reading, g, 444).starts_with("27.8 ± 41.9"));
     CHECK(textOf(reading, g, 444).find(", 0 to 100, ") != std::string::npos);
     CHECK(textOf(reading, g, 444).find("4 voxels") != std::string::npos);
     CHECK(textOf(reading, g, 444).find("42.9 % outside the volume") != std::string::npos);

@@ -91,13 +91,16 @@ RulerReadings RulerController::readings() const {
     return readings;
 }
 
-QString RulerController::textOf(const Ruler& ruler) const {
+QString RulerController::said(const Ruler& ruler, Words words) const {
     const RulerReadings all = readings();
     const auto known = all.find(ruler.number);
     if (known == all.end()) return QStringLiteral("…");
     const Volume& data = *m_services.scene().data;
-    return QString::fromStdString(pellucid::textOf(known->second, data.geometry(), data.range().hi - data.range().lo));
+    return QString::fromStdString(words(known->second, data.geometry(), data.range().hi - data.range().lo));
 }
+
+QString RulerController::textOf(const Ruler& ruler) const { return said(ruler, pellucid::textOf); }
+QString RulerController::labelOf(const Ruler& ruler) const { return said(ruler, pellucid::labelOf); }
 
 std::vector<ShownRuler> RulerController::shown() const {
     const Scene& scene = m_services.scene();
@@ -109,7 +112,7 @@ std::vector<ShownRuler> RulerController::shown() const {
     // What is being set is seen whatever is hidden.
     const Volume& data = *scene.data;
     if (const auto ruler = m_pointer ? unfinished(*m_pointer) : std::nullopt) {
-        all.push_back({*ruler, labelOf(readGeometry(*ruler), data.geometry(), 1), true});
+        all.push_back({*ruler, pellucid::labelOf(readGeometry(*ruler), data.geometry(), 1), true});
         return all;
     }
     if (m_points.empty()) return all;

@@ -29,7 +29,9 @@ public:
     /// What is known of the present measures, in the present frame. While a hand changes a sphere or box, it still has
     /// what was found last.
     RulerReadings readings() const;
-    QString textOf(const Ruler& ruler) const; ///< with units; "…" where it is being found
+    /// With units; "…" where it is being found.
+    QString textOf(const Ruler& ruler) const;
+    QString labelOf(const Ruler& ruler) const; ///< as in the picture
     /// Those that are drawn; the selected one and the one that is being set are marked. Empty where people hide them.
     std::vector<ShownRuler> shown() const;
     std::vector<Ruler> draggable() const; ///< of these, those that a hand may take hold of
@@ -79,6 +81,8 @@ private:
         std::shared_ptr<const Volume> data;
     };
     void follow(const Scene& before, const Scene& after);
+    using Words = std::string (*)(const RulerReading& reading, const Geometry& geometry, double span);
+    QString said(const Ruler& ruler, Words words) const;
     void findMissing();
     bool isKnown(const Ruler& ruler) const;
     std::optional<Ruler>

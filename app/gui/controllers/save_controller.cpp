@@ -15,7 +15,7 @@
 #include "report/tf_plot.h"
 #include "services/services.h"
 #include "session/session_json.h"
-#include "tf/formats/tf_json.h"
+#include "tf/formats/tf_file.h"
 #include "version.h"
 
 namespace pellucid::gui {
@@ -123,9 +123,13 @@ bool SaveController::saveSession(const QString& path) {
 
 bool SaveController::saveTf(const QString& path) {
     return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the transfer function"), [&] {
-        writeTf(*m_services.store().committed().session.tf(), path.toStdString());
-        setTfPath(path);
-        m_services.store().setTfSaved();
+        const Scene& scene = m_services.store().committed();
+        const bool whole = !isWrittenForOthers(path.toStdString()); // else what another program knows of it
+        writeTfFile(whole ? *scene.session.tf() : scene.tf, scene.volume->range(), path.toStdString());
+        if (whole) {
+            setTfPath(path);
+            m_services.store().setTfSaved();
+        }
         saySaved(path);
     });
 }
@@ -213,7 +217,8 @@ bool SaveController::chooseTf(bool askForName) {
     const QString offered = m_tfPath.isEmpty() ? baseName(m_services.scene()) + ".tf.json" : m_tfPath;
     const QString path = askForName || m_tfPath.isEmpty()
                              ? askSavePath(m_services.window(), tr("Save transfer function"), "tfFolder", offered,
-                                           tr("Transfer functions (*.tf.json)"), ".json", ".tf.json")
+                                           tr("Transfer functions (*.tf.json);;Presets of ParaView (*.paraview.json)"),
+                                           ".json", ".tf.json")
                              : m_tfPath;
     return !path.isEmpty() && saveTf(path);
 }

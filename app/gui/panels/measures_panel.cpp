@@ -95,8 +95,8 @@ void MeasuresPanel::makeList() {
     const QString tips[] = {tr("Unchecked measures are hidden in picture and slices. F2 renames, Delete removes."),
                             tr("What is measured"),
                             tr("Lengths in the unit of the volume, mm for medical files; angles in degrees; values in\n"
-                               "data units, of the voxels whose centres lie in the sphere or box. Sigma is their\n"
-                               "standard deviation (by n). Clipping and transfer function do not count.")};
+                               "data units, mean ± standard deviation (by n) of the voxels whose centres lie in\n"
+                               "the sphere or box. Clipping and transfer function do not count.")};
     for (int column = 0; column <= kValue; ++column) m_list->headerItem()->setToolTip(column, tips[column]);
     m_list->header()->setStretchLastSection(true);
     m_list->header()->setSectionResizeMode(kName, QHeaderView::ResizeToContents);
@@ -130,7 +130,7 @@ void MeasuresPanel::fillRow(QTreeWidgetItem& item, const Ruler& ruler) const {
     item.setData(kName, kNumber, ruler.number);
     item.setText(kName, QString::fromStdString(ruler.name));
     item.setText(kKind, tr(kKinds[static_cast<std::size_t>(ruler.kind)]));
-    item.setText(kValue, value);
+    item.setText(kValue, m_rulers.labelOf(ruler));
     item.setCheckState(kName, ruler.shown ? Qt::Checked : Qt::Unchecked);
     item.setFlags(item.flags() | Qt::ItemIsUserCheckable | Qt::ItemIsEditable);
     for (int column = 0; column <= kValue; ++column)

@@ -12,6 +12,7 @@
 #include "volume/orientation.h"
 #include "widgets/controls.h"
 #include "widgets/number_text.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {
@@ -28,11 +29,17 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
       m_renderer(named(new QLabel(&bar), "rendererLabel")), m_engine(named(new QLabel(&bar), "engineLabel")),
-      m_background(named(new QLabel(&bar), "backgroundLabel")), m_progress(progressBar("backgroundProgress", &bar)),
+      m_background(named(new QLabel(&bar), "backgroundLabel")), m_hint(named(new QLabel(&bar), "hintLabel")),
+      m_progress(progressBar("backgroundProgress", &bar)),
       m_cancel(named(toolButton(tr("Cancel"), &bar), "backgroundCancel")) {
     m_progress->setMaximumSize(160, 14);
     m_cancel->setMaximumHeight(bar.fontMetrics().height()); // no higher than the texts
     bar.setSizeGripEnabled(false);
+    m_hint->setText(tr("Click: what is seen there  ·  drag: turn  ·  wheel: zoom  ·  middle drag: move"));
+    m_hint->setTextFormat(Qt::PlainText);
+    m_hint->setMinimumWidth(1); // figures and sizes come before it
+    makeFaint(*m_hint);
+    bar.addWidget(m_hint, 1);
     bar.addWidget(m_background);
     bar.addWidget(m_progress);
     bar.addWidget(m_cancel);
@@ -70,6 +77,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
 
 void StatusLine::followScene() {
     if (!m_services.store().hasVolume()) return;
+    followBackground(); // the hint comes with the first volume
     const Scene& scene = m_services.scene();
     const Volume& volume = *scene.volume;
     QString text = QStringLiteral("%1×%2×%3 %4")
@@ -136,6 +144,7 @@ void StatusLine::followBackground() {
     m_background->setText(text);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})
         widget->setVisible(busy);
+    m_hint->setVisible(!busy && m_services.store().hasVolume());
 }
 
 } // namespace pellucid::gui

@@ -36,7 +36,7 @@ private:
     StudyController& m_studies;
     VolumeView& m_view;
     QStatusBar& m_bar;
-    QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background;
+    QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background, *m_hint;
     QProgressBar* m_progress;
     QToolButton* m_cancel;
 };

@@ -8,6 +8,8 @@
 
 #include <mpi.h>
 
+#include "base/check.h"
+
 namespace pellucid {
 
 namespace {
@@ -55,18 +57,46 @@ private:
 
 } // namespace
 
-MpiRanks::MpiRanks(int& argc, char**& argv) {
+struct MpiRanks::Group {
+    MPI_Comm comm = MPI_COMM_WORLD;
+    bool isOfProgram = true; ///< the program's own, with which MPI ends
+};
+
+MpiRanks::MpiRanks(int& argc, char**& argv) : m_group(std::make_unique<Group>()) {
     int provided = 0;
     require(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "begin");
-    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-    MPI_Comm_rank(MPI_COMM_WORLD, &m_rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &m_size);
+    findPlace();
+}
+
+MpiRanks::MpiRanks(const void* comm) : m_group(std::make_unique<Group>()) {
+    m_group->isOfProgram = false;
+    require(MPI_Comm_dup(*static_cast<const MPI_Comm*>(comm), &m_group->comm), "begin");
+    findPlace();
+}
+
+void MpiRanks::findPlace() {
+    MPI_Comm_set_errhandler(m_group->comm, MPI_ERRORS_RETURN);
+    MPI_Comm_rank(m_group->comm, &m_rank);
+    MPI_Comm_size(m_group->comm, &m_size);
 }
 
 MpiRanks::~MpiRanks() {
     // What has not been agreed on cannot be ended in order: others may wait for this one for ever.
-    if (!m_left && m_size > 1) MPI_Abort(MPI_COMM_WORLD, 1);
-    MPI_Finalize();
+    if (!m_left && m_size > 1) MPI_Abort(m_group->comm, 1);
+    if (m_group->isOfProgram)
+        MPI_Finalize();
+    else
+        MPI_Comm_free(&m_group->comm);
+}
+
+int MpiRanks::onThisMachine() {
+    requireAll();
+    MPI_Comm here = MPI_COMM_NULL;
+    require(MPI_Comm_split_type(m_group->comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here), "find neighbours");
+    int count = 1;
+    MPI_Comm_size(here, &count);
+    MPI_Comm_free(&here);
+    return count;
 }
 
 void MpiRanks::requireSameProgram() {
@@ -77,9 +107,13 @@ void MpiRanks::requireSameProgram() {
 }
 
 void MpiRanks::requireAll() {
+    // Calls of two threads would meet those of others in any order.
+    int isMain = 0;
+    MPI_Is_thread_main(&isMain);
+    PELLUCID_CHECK(isMain != 0);
     ++m_traffic.rounds;
     int well = 1, all = 0;
-    require(MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD), "reach all ranks");
+    require(MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm), "reach all ranks");
     if (all == 1) return;
     m_lost = true;
     throw RankLost();
@@ -90,12 +124,12 @@ MpiRanks::Ending MpiRanks::leave(const Ending& mine) {
     // The others may be in any of their calls, which all begin with requireAll().
     if (!m_lost) {
         int well = mine.status == 0 ? 1 : 0, all = 0;
-        MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+        MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm);
     }
     const std::string& text = mine.message;
     const std::array<int, 2> own{mine.status, static_cast<int>(text.size())};
     std::vector<int> sizes(static_cast<std::size_t>(m_size) * 2);
-    MPI_Allgather(own.data(), 2, MPI_INT, sizes.data(), 2, MPI_INT, MPI_COMM_WORLD);
+    MPI_Allgather(own.data(), 2, MPI_INT, sizes.data(), 2, MPI_INT, m_group->comm);
     Ending result;
     int from = -1;
     bool allSay = true;
@@ -110,7 +144,7 @@ MpiRanks::Ending MpiRanks::leave(const Ending& mine) {
     if (from < 0) return result;
     result.message.resize(static_cast<std::size_t>(sizes[static_cast<std::size_t>(from) * 2 + 1]));
     if (m_rank == from) result.message = text;
-    MPI_Bcast(result.message.data(), static_cast<int>(result.message.size()), MPI_CHAR, from, MPI_COMM_WORLD);
+    MPI_Bcast(result.message.data(), static_cast<int>(result.message.size()), MPI_CHAR, from, m_group->comm);
     if (!allSay && m_size > 1) result.message = "rank " + std::to_string(from) + ": " + result.message;
     return result;
 }
@@ -121,7 +155,7 @@ std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
     const auto count = static_cast<std::size_t>(m_size);
     std::vector<std::uint64_t> send(count, 0), receive(count, 0);
     for (const RankMessage& message : messages) send[static_cast<std::size_t>(message.rank)] = message.bytes.size();
-    require(MPI_Alltoall(send.data(), 1, MPI_UINT64_T, receive.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD),
+    require(MPI_Alltoall(send.data(), 1, MPI_UINT64_T, receive.data(), 1, MPI_UINT64_T, m_group->comm),
             "tell how much is sent");
     std::vector<RankMessage> arrived;
     for (std::size_t r = 0; r < count; ++r) {
@@ -135,7 +169,7 @@ std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
         for (std::size_t at = 0; message.rank != m_rank && at < message.bytes.size(); at += kMostAtOnce)
             require(MPI_Irecv(message.bytes.data() + at,
                               static_cast<int>(std::min(kMostAtOnce, message.bytes.size() - at)), MPI_BYTE,
-                              message.rank, kTag, MPI_COMM_WORLD, &requests.emplace_back()),
+                              message.rank, kTag, m_group->comm, &requests.emplace_back()),
                     "receive");
     for (RankMessage& message : messages) {
         if (message.bytes.empty()) continue;
@@ -149,7 +183,7 @@ std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
         for (std::size_t at = 0; at < message.bytes.size(); at += kMostAtOnce)
             require(MPI_Isend(message.bytes.data() + at,
                               static_cast<int>(std::min(kMostAtOnce, message.bytes.size() - at)), MPI_BYTE,
-                              message.rank, kTag, MPI_COMM_WORLD, &requests.emplace_back()),
+                              message.rank, kTag, m_group->comm, &requests.emplace_back()),
                     "send");
     }
     ++m_traffic.rounds;
@@ -165,17 +199,17 @@ void MpiRanks::sum(std::span<double> values) {
     // Pairs, pairs of pairs, …: the order depends on the number of ranks alone.
     for (int step = 1; step < m_size; step *= 2) {
         if ((m_rank & step) != 0) {
-            require(MPI_Send(values.data(), count, MPI_DOUBLE, m_rank - step, kTag, MPI_COMM_WORLD), "send");
+            require(MPI_Send(values.data(), count, MPI_DOUBLE, m_rank - step, kTag, m_group->comm), "send");
             m_traffic.bytes += values.size_bytes();
             ++m_traffic.messages;
             break;
         }
         if (m_rank + step >= m_size) continue;
-        require(MPI_Recv(other.data(), count, MPI_DOUBLE, m_rank + step, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE),
+        require(MPI_Recv(other.data(), count, MPI_DOUBLE, m_rank + step, kTag, m_group->comm, MPI_STATUS_IGNORE),
                 "receive");
         for (std::size_t i = 0; i < values.size(); ++i) values[i] += other[i];
     }
-    require(MPI_Bcast(values.data(), count, MPI_DOUBLE, 0, MPI_COMM_WORLD), "tell all ranks");
+    require(MPI_Bcast(values.data(), count, MPI_DOUBLE, 0, m_group->comm), "tell all ranks");
 }
 
 std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> bytes) {
@@ -184,7 +218,7 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
     const auto count = static_cast<std::size_t>(m_size);
     const std::uint64_t mine = bytes.size();
     std::vector<std::uint64_t> sizes(count);
-    require(MPI_Allgather(&mine, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD), "tell all ranks");
+    require(MPI_Allgather(&mine, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, m_group->comm), "tell all ranks");
     // A rank after the other where one is large, since MPI counts in int; else all at once.
     std::vector<std::vector<std::byte>> all(count);
     std::uint64_t total = 0;
@@ -198,7 +232,7 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
             starts[r] = static_cast<int>(at);
         }
         require(MPI_Allgatherv(bytes.data(), static_cast<int>(mine), MPI_BYTE, joined.data(), counts.data(),
-                               starts.data(), MPI_BYTE, MPI_COMM_WORLD),
+                               starts.data(), MPI_BYTE, m_group->comm),
                 "tell all ranks");
         for (std::size_t r = 0; r < count; ++r) {
             const auto first = joined.begin() + starts[r];
@@ -211,7 +245,7 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
         all[r].resize(sizes[r]);
         for (std::size_t at = 0; at < sizes[r]; at += kMostAtOnce)
             require(MPI_Bcast(all[r].data() + at, static_cast<int>(std::min<std::size_t>(kMostAtOnce, sizes[r] - at)),
-                              MPI_BYTE, static_cast<int>(r), MPI_COMM_WORLD),
+                              MPI_BYTE, static_cast<int>(r), m_group->comm),
                     "tell all ranks");
     }
     return all;

@@ -8,12 +8,14 @@
 
 namespace pellucid {
 
-/// MPI from the beginning of a program to its end; one at a time.
+/// The ranks of a program that MPI has started, or of a part of one.
 class MpiRanks final : public Communicator {
 public:
-    /// Begins. Throws Error where MPI cannot.
+    /// Begins MPI, which ends with this; one at a time. Throws Error where MPI cannot.
     MpiRanks(int& argc, char**& argv);
-    /// Ends it; where leave() was not called and another rank still waits, that one ends, too.
+    /// In a program that has begun MPI: the ranks of `comm`, which points to an MPI_Comm, with messages of their own.
+    explicit MpiRanks(const void* comm);
+    /// Where leave() was not called and another rank still waits, that one ends, too.
     ~MpiRanks() override;
     MpiRanks(const MpiRanks&) = delete;
     MpiRanks& operator=(const MpiRanks&) = delete;
@@ -23,6 +25,9 @@ public:
     std::vector<RankMessage> exchange(std::vector<RankMessage> messages) override;
     void sum(std::span<double> values) override;
     std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) override;
+
+    /// How many of the ranks run on this one's machine, itself included. Collective.
+    int onThisMachine();
 
     /// Throws Error where ranks run different programs.
     void requireSameProgram();
@@ -37,8 +42,11 @@ public:
     Ending leave(const Ending& mine);
 
 private:
+    struct Group;
+    void findPlace();
     void requireAll();
 
+    std::unique_ptr<Group> m_group;
     int m_rank = 0, m_size = 1;
     bool m_left = false, m_lost = false;
 };

@@ -22,7 +22,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kTile = 32; ///< pixels
+constexpr int kTile = kTileRows; ///< pixels
 
 void copy(const Vec3& from, float (&to)[3]) {
     for (int a = 0; a < 3; ++a) to[a] = static_cast<float>(from[a]);
@@ -53,7 +53,10 @@ public:
                  const JobControl& job) override {
         settings.validate();
         Image image(settings.width, settings.height);
-        draw(camera, tf, settings, 1, image, tilesOf(image), {}, job);
+        std::vector<ImagePart> tiles = tilesOf(image);
+        const PictureBands& bands = m_options.bands;
+        std::erase_if(tiles, [&](const ImagePart& t) { return t.y0 / kTile % bands.count != bands.first; });
+        draw(camera, tf, settings, 1, image, tiles, {}, job);
         return image;
     }
 
@@ -96,6 +99,9 @@ public:
     }
 
 private:
+    /// Of the volume that the picture is of, or of which it shows a part.
+    const Geometry& whole() const { return m_options.blockOf ? *m_options.blockOf : m_volume->geometry(); }
+
     static std::vector<ImagePart> tilesOf(const Image& image) {
         std::vector<ImagePart> tiles;
         for (int y = 0; y < image.height; y += kTile)
@@ -199,7 +205,7 @@ private:
     }
 
     PictureRays raysOf(const Camera& camera, const RenderSettings& settings, double scale) const {
-        const Geometry& g = m_volume->geometry();
+        const Geometry& g = whole();
         double shortest = g.d0(); // the finer of the two decides how long steps are
         if (settings.overlay) {
             const Vec3& spacing = settings.overlay->geometry.spacing;
@@ -237,7 +243,7 @@ private:
         s.leap = m_options.leap;
         s.halvings = settings.halvings();
         s.jitter = settings.jitter;
-        if (!settings.background) return;
+        if (!settings.background || m_options.blockOf) return;
         s.hasBackground = true;
         copy(vector(*settings.background), s.background);
         copy(vector(settings.backgroundTop.value_or(*settings.background)), s.backgroundTop);
@@ -256,7 +262,7 @@ private:
             m_specular[static_cast<std::size_t>(i)] =
                 static_cast<float>(from.specular * std::pow(static_cast<double>(i) / kSpecularEntries, from.shininess));
         l.specular = m_specular.data();
-        const Geometry& g = m_volume->geometry();
+        const Geometry& g = whole();
         l.gradientOpacity = static_cast<float>(from.gradientOpacity);
         l.silhouettes = static_cast<float>(from.silhouettes);
         l.occlusion = static_cast<float>(from.occlusion);

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
 #include "base/text.h"
+#include "tf/formats/paraview_preset.h"
 #include "tf/formats/tf_json.h"
 #include "tf/formats/voreen_tfi.h"
 #include "tf/presets.h"
@@ -28,6 +33,15 @@ bool hasTfSuffix(const std::string& path) {
 bool isForeignTf(const std::string& path) { return endsWith(path, kVoreenSuffix); }
 
 TransferFunction readTfFile(const std::string& path) { return isForeignTf(path) ? readVoreenTf(path) : readTf(path); }
+
+bool isWrittenForOthers(const std::string& path) { return endsWith(path, kParaViewSuffix); }
+
+void writeTfFile(const TransferFunction& tf, const ValueRange& window, const std::string& path) {
+    if (!isWrittenForOthers(path)) return writeTf(tf, path);
+    std::string name = std::filesystem::path(path).filename().string();
+    name.resize(name.size() - std::string(kParaViewSuffix).size());
+    writeTextAtomically(path, paraViewPreset(tf, window, name).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
 
 TransferFunction loadTf(const std::string& specOrPath) {
     if (auto tf = tfFromSpec(specOrPath)) return *tf;

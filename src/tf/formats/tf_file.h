@@ -19,6 +19,12 @@ bool isForeignTf(const std::string& path);
 /// By suffix: *.tfi as Voreen writes it (voreen_tfi.h), anything else as *.tf.json (tf_json.h). Throws Error.
 TransferFunction readTfFile(const std::string& path);
 
+/// By suffix: *.paraview.json as a preset for ParaView (paraview_preset.h), in the data units of `window`, which the
+/// intensities of `tf` refer to; anything else as *.tf.json. Through a temporary file beside `path` that is renamed.
+void writeTfFile(const TransferFunction& tf, const ValueRange& window, const std::string& path);
+/// Whether writeTfFile() writes what only another program reads.
+bool isWrittenForOthers(const std::string& path);
+
 /// What a user may name: "tents:N[:PEAK]", "ramp:N", "preset:NAME" (see presets.h) or a file. Throws Error.
 TransferFunction loadTf(const std::string& specOrPath);
 

@@ -1,13 +1,16 @@
-// Writes NRRD0004, gzip-compressed, in the volume's own type.
+// Writes NRRD0004: gzip-compressed in the volume's own type, or unpacked where several processes write together.
 #include <bit>
 
 #include <zlib.h>
 
 #include "base/atomic_file.h"
+#include "base/joint_file.h"
 #include "base/round_numbers.h"
 #include "volume/formats/text_header.h"
 #include "volume/loader.h"
+#include "volume/volume_part.h"
 #include "volume/voxel_loops.h"
+#include "volume/write_field.h"
 
 namespace pellucid {
 
@@ -18,7 +21,7 @@ const char* nrrdType(SampleType type) {
     return kTypes[static_cast<std::size_t>(type)];
 }
 
-std::string headerText(const Geometry& g, SampleType type) {
+std::string headerText(const Geometry& g, SampleType type, const std::string& encoding) {
     const auto vector = [](const Vec3& v) {
         return "(" + exactText(v.x) + "," + exactText(v.y) + "," + exactText(v.z) + ")";
     };
@@ -30,7 +33,7 @@ std::string headerText(const Geometry& g, SampleType type) {
         "\nsizes: " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) + " " + std::to_string(g.dims.z) +
         "\nspace directions: " + vector(axes[0]) + " " + vector(axes[1]) + " " + vector(axes[2]) +
         "\nkinds: domain domain domain\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +
-        "\nencoding: gzip\nspace origin: " + vector(g.origin) + "\n\n";
+        "\nencoding: " + encoding + "\nspace origin: " + vector(g.origin) + "\n\n";
     return text;
 }
 
@@ -64,7 +67,7 @@ void deflateInto(OutputFile& out, const char* data, std::size_t bytes) {
 
 void writeFile(const std::string& path, const Geometry& geometry, SampleType type, const void* data) {
     writeAtomically(path, [&](OutputFile& out) {
-        out.write(headerText(geometry, type));
+        out.write(headerText(geometry, type, "gzip"));
         deflateInto(out, static_cast<const char*>(data), voxelCount(geometry.dims) * bytesPerSample(type));
     });
 }
@@ -79,6 +82,25 @@ void writeNrrd(const Volume& volume, const std::string& path) {
 void writeNrrd(const Geometry& geometry, const Grid<float>& values, const std::string& path) {
     PELLUCID_CHECK(values.dims() == geometry.dims);
     writeFile(path, geometry, SampleType::F32, values.data());
+}
+
+void writeField(const Volume& volume, const Grid<float>& values, const std::string& path) {
+    if (volume.elsewhere() == nullptr) return writeNrrd(volume.geometry(), values, path);
+    PELLUCID_CHECK(values.dims() == volume.dimsHere());
+    const Int3 dims = volume.dims();
+    const std::string header = headerText(volume.geometry(), SampleType::F32, "raw");
+    const VolumePart part = partHere(volume);
+    const auto place = [&](const Int3& v) { return header.size() + sizeof(float) * voxelIndex(dims, v.x, v.y, v.z); };
+    writeJointly(
+        path, place({0, 0, dims.z}),
+        [&](std::span<const std::byte> bytes) { return volume.elsewhere()->gather(bytes); },
+        [&](JointFile& file) {
+            file.writeAt(0, header.data(), header.size()); // the same from all
+            if (part.volume == nullptr) return;
+            part.forOwnRows(0, part.ownLayers(), [&](const Int3& row, std::size_t index, int voxels) {
+                file.writeAt(place(row), &values[index], sizeof(float) * static_cast<std::size_t>(voxels));
+            });
+        });
 }
 
 } // namespace pellucid

@@ -1,0 +1,21 @@
+// *.paraview.json, colour maps with opacities as ParaView imports them.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tf/transfer_function.h"
+
+namespace pellucid {
+
+/// The suffix by which a file is known to be one.
+inline constexpr const char* kParaViewSuffix = ".paraview.json";
+
+/// A list of one preset, called `name`: control points as RGBPoints and Points, in data units, x = 0 and x = 1 at the
+/// ends of `window` (lo < hi); what an eye hides has opacity 0. A step is two points that lie 1e-6 of the window apart.
+/// ParaView draws the same where its ScalarOpacityUnitDistance is d0, but for opacities up to 1e-4, which it takes for
+/// 0. Features are not part of it.
+nlohmann::json paraViewPreset(const TransferFunction& tf, const ValueRange& window, const std::string& name);
+
+} // namespace pellucid
