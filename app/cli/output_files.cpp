@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file_watch.h"
 #include "output.h"
+#include "ranks/process_ranks.h"
 
 namespace pellucid::cli {
 
@@ -157,6 +158,15 @@ std::string parseOutputFolder(const std::string& path, const std::string& option
         throw FileError("a file has the folder's name", path, "choose another name");
     requireWritable(folder.string());
     return path;
+}
+
+OutputFolder::OutputFolder(const std::string& path) : m_path(path) {
+    std::error_code ec;
+    m_isNew = std::filesystem::create_directory(path, ec);
+    if (ec && !std::filesystem::is_directory(path))
+        throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
+    if (Communicator* ranks = ranksOfProcess())
+        for (const bool madeByRank : gatherValues(*ranks, m_isNew)) m_isNew |= madeByRank;
 }
 
 void writeCamera(const Camera& camera, const std::string& path) {

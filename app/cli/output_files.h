@@ -58,12 +58,8 @@ CLI::Option* addOutputFolder(CLI::App& app, const std::string& name, T& target, 
 /// A folder that goes again where nothing could be written into it.
 class OutputFolder {
 public:
-    explicit OutputFolder(const std::string& path) : m_path(path) {
-        std::error_code ec;
-        m_isNew = std::filesystem::create_directory(path, ec);
-        if (ec && !std::filesystem::is_directory(path))
-            throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
-    }
+    /// On ranks it is collective: whichever of them makes it, it is new for all.
+    explicit OutputFolder(const std::string& path);
     ~OutputFolder() {
         std::error_code ec;
         if (m_isNew) std::filesystem::remove(m_path, ec); // an empty one only

@@ -221,7 +221,7 @@ ShownFrame TimeSeries::show(int frame, const std::optional<ValueRange>& window, 
     job.throwIfStopped();
     shown.histogram = std::make_shared<const Histogram>(makeHistogram(*shown.volume));
     job.throwIfStopped();
-    shown.codes = sharedIntensityGrid(*shown.volume);
+    if (const Volume* here = partHere(*shown.volume).volume) shown.codes = sharedIntensityGrid(*here);
     const std::lock_guard lock(m_mutex);
     if (const auto found = m_entries.find(frame); found != m_entries.end() && found->second.data == data) {
         found->second.window = wanted;

@@ -204,8 +204,13 @@ TEST_CASE("ranks find the view that one process finds", "[mpi]") {
     const Words words =
         Words{"views"} + rawVolume(shop) + Words{"--tf", "tents:4:0.3", "--feature", "f3", "--count", "16"};
     const json one = ofOne(shop, words), many = ofMany(shop, 2, words);
-    for (const char* key : {"azimuth", "elevation", "value"})
-        CHECK(many["best"][key].get<double>() == Approx(one["best"][key].get<double>()).margin(1e-4));
+    CHECK(std::abs(many["best"]["value"].get<double>() - one["best"]["value"].get<double>()) < 1e-4);
+    for (std::size_t a = 0; a < 3; ++a)
+        CHECK(std::abs(many["best"]["camera"]["eye"][a].get<double>() - one["best"]["camera"]["eye"][a].get<double>()) <
+              1e-3);
+    REQUIRE(many["views"].size() == one["views"].size());
+    for (std::size_t i = 0; i < one["views"].size(); ++i)
+        CHECK(std::abs(many["views"][i]["value"].get<double>() - one["views"][i]["value"].get<double>()) < 1e-4);
 }
 
 TEST_CASE("ranks follow a series as one process does", "[mpi]") {

@@ -130,7 +130,9 @@ void MeasuresPanel::fillRow(QTreeWidgetItem& item, const Ruler& ruler) const {
     item.setData(kName, kNumber, ruler.number);
     item.setText(kName, QString::fromStdString(ruler.name));
     item.setText(kKind, tr(kKinds[static_cast<std::size_t>(ruler.kind)]));
-    item.setText(kValue, m_rulers.labelOf(ruler));
+    // Of values what fits; the tool tip has all.
+    const bool ofValues = ruler.kind == RulerKind::Sphere || ruler.kind == RulerKind::Box;
+    item.setText(kValue, ofValues ? m_rulers.labelOf(ruler) : value);
     item.setCheckState(kName, ruler.shown ? Qt::Checked : Qt::Unchecked);
     item.setFlags(item.flags() | Qt::ItemIsUserCheckable | Qt::ItemIsEditable);
     for (int column = 0; column <= kValue; ++column)

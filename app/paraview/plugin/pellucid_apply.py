@@ -8,9 +8,9 @@ the macro again with the filter selected.
 
 import json
 
-from paraview import servermanager
+from paraview import servermanager, simple
 from paraview.simple import (GetActiveSource, GetActiveViewOrCreate, GetColorTransferFunction, GetDisplayProperties,
-                             GetOpacityTransferFunction, PellucidOptimize, Render)
+                             GetOpacityTransferFunction, Render)
 
 
 def look_as(view, optimize):
@@ -33,10 +33,9 @@ def apply_answer(source, optimize, view):
     if fields.GetAbstractArray("preset") is None:
         raise RuntimeError("the optimization failed: see the messages of the server")
     preset = json.loads(fields.GetAbstractArray("preset").GetValue(0))[0]
-    array = optimize.SelectInputArray[1]
+    array = optimize.InputArray[1]
     colors, opacities = GetColorTransferFunction(array), GetOpacityTransferFunction(array)
-    for function in (colors, opacities):
-        function.AutomaticRescaleRangeMode = "Never"
+    colors.AutomaticRescaleRangeMode = "Never"
     colors.ColorSpace = preset["ColorSpace"]
     colors.RGBPoints = preset["RGBPoints"]
     opacities.Points = preset["Points"]
@@ -56,7 +55,7 @@ def main():
         raise RuntimeError("select an image in the pipeline browser first")
     isOptimize = active.GetXMLName() == "PellucidOptimize"
     source = active.Input if isOptimize else active
-    optimize = active if isOptimize else PellucidOptimize(Input=source)
+    optimize = active if isOptimize else simple.Pellucidoptimizetransferfunction(Input=source)
     look_as(view, optimize)
     table = apply_answer(source, optimize, view)
     for row in range(table.GetNumberOfRows()):
