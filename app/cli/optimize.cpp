@@ -194,7 +194,8 @@ Command addOptimize(CLI::App& program) {
     addRepeated(*app, "--limits", "NAME:LO:HI", o->limits, parseLimits,
                 "keep the opacity of this feature within LO and HI");
     addRepeated(*app, "--lock", "NAME", o->locked, anyText, "keep the opacity of this feature as it is");
-    addOutputFile(*app, "--out-tf", o->outTf, "write the optimized transfer function (the best one seen)" + std::string(kTfFileHelp));
+    addOutputFile(*app, "--out-tf", o->outTf,
+                  "write the optimized transfer function (the best one seen)" + std::string(kTfFileHelp));
     o->report.add(*app);
     addOutputFile(*app, "--out-camera", o->outCamera, "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,

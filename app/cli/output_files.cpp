@@ -165,8 +165,14 @@ OutputFolder::OutputFolder(const std::string& path) : m_path(path) {
     m_isNew = std::filesystem::create_directory(path, ec);
     if (ec && !std::filesystem::is_directory(path))
         throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
-    if (Communicator* ranks = ranksOfProcess())
+    Communicator* const ranks = ranksOfProcess();
+    if (ranks == nullptr) return;
+    try {
         for (const bool madeByRank : gatherValues(*ranks, m_isNew)) m_isNew |= madeByRank;
+    } catch (...) {
+        if (m_isNew) std::filesystem::remove(path, ec);
+        throw;
+    }
 }
 
 void writeCamera(const Camera& camera, const std::string& path) {

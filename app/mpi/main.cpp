@@ -1,12 +1,15 @@
 // pellucid-mpi: commands of pellucid-cli on volumes that no process holds as a whole. All ranks do the same; what they
-// have of a volume differs. Rank 0 alone says anything and writes files.
+// have of a volume differs. Rank 0 alone says anything and writes files, but for those that all write together
+// (base/joint_file.h).
 #include <algorithm>
 
 #include "base/atomic_file.h"
+#include "base/memory.h"
 #include "program.h"
 #include "ranks/mpi/mpi_communicator.h"
 #include "ranks/process_ranks.h"
 #include "ranks/rank_volume.h"
+#include "volume/time_series.h"
 
 namespace pellucid::cli {
 
@@ -17,6 +20,8 @@ std::vector<Command> addCommands(CLI::App& program) {
             addOptimize(program), addViews(program),   addRender(program), addSequence(program)};
 }
 
+constexpr std::uint64_t kMostForFrames = std::uint64_t{2} << 30; ///< bytes per rank, of frames that may be wanted again
+
 Outcome runOnRanks(const Program& program, const std::vector<std::string>& arguments, MpiRanks& ranks) {
     try {
         ranks.requireSameProgram();
@@ -26,6 +31,10 @@ Outcome runOnRanks(const Program& program, const std::vector<std::string>& argum
         return {1, {}, e.what(), {}};
     }
     setRanksOfProcess(&ranks);
+    // Frames of a series that one rank forgets and another keeps could not be read together: all keep as many.
+    std::uint64_t budget = kMostForFrames;
+    for (const std::uint64_t free : gatherValues(ranks, availableMemoryBytes())) budget = std::min(budget, free / 4);
+    TimeSeries::setDefaultBudget(static_cast<std::size_t>(budget));
     keepWrittenFiles(ranks.rank() == 0);
     setVolumeLoader(
         [&ranks](const VolumeSource& source, const JobControl& job) { return loadOnRanks(ranks, source, {}, job); });

@@ -29,7 +29,7 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
 
 
 def in_paraview(task):
-    """On every process of pvbatch, or on the client of a server."""
+    """In pvbatch, whose first process runs scripts, or on the client of a server."""
     from paraview import servermanager, simple
     if task.get("port"):
         simple.Connect("127.0.0.1", task["port"])

@@ -206,14 +206,17 @@ void writeJointly(const std::string& path, std::uint64_t bytes, const GatherByte
     const fs::path target = behindLinks(path);
     const bool makes = g_keeps;
     JointFile file(path);
-    std::string temporary = makes ? temporaryBeside(target) : std::string();
-    std::optional<Unfinished> entry;
-    if (makes) entry.emplace(temporary);
+    std::string temporary;
+    std::optional<Unfinished> entry; // where there is a file to remove
     try {
         if (makes) {
-            file.m_descriptor =
-                uninterrupted([&] { return open(temporary.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); });
+            do { // one of this name was left by a process that was killed, or is another machine's
+                temporary = temporaryBeside(target);
+                file.m_descriptor = uninterrupted(
+                    [&] { return open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+            } while (file.m_descriptor < 0 && errno == EEXIST);
             if (file.m_descriptor < 0) throw cannotWrite(path, errno);
+            entry.emplace(temporary);
             takePermissions(file.m_descriptor, target);
             // That there is no room is known before any process writes, where the disk can tell.
             if (const int error =
@@ -237,7 +240,7 @@ void writeJointly(const std::string& path, std::uint64_t bytes, const GatherByte
         gather({}); // all are done
         if (makes && std::rename(temporary.c_str(), target.c_str()) != 0) throw cannotWrite(path, errno);
     } catch (...) {
-        if (makes) ::unlink(temporary.c_str());
+        if (entry) ::unlink(temporary.c_str());
         throw;
     }
     gather({}); // it is there for all

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "base/byte_stream.h"
@@ -11,10 +12,11 @@
 
 namespace pellucid {
 
-/// Another rank cannot go on. What is wrong is said by that rank alone.
-class RankLost : public Error {
+/// Another rank cannot go on. What is wrong is said by that rank alone. No Error: nothing that passes over a fault of a
+/// file may pass over this.
+class RankLost : public std::runtime_error {
 public:
-    RankLost() : Error("another rank cannot go on", "", "see what it says") {}
+    RankLost() : std::runtime_error("another rank cannot go on") {}
 };
 
 /// Bytes for a rank, or from one.

@@ -26,6 +26,7 @@ void forRows(const VoxelRegion& region, const VoxelRegion& part, std::size_t byt
 
 std::vector<std::byte> exchangeVoxels(Communicator& ranks, const VoxelRegion& from, std::span<const std::byte> values,
                                       const VoxelRegion& to, std::size_t bytesEach) {
+    PELLUCID_CHECK(isEmpty(from) || values.size() == voxelCount(from.hi - from.lo) * bytesEach);
     struct Regions {
         VoxelRegion from, to;
     };

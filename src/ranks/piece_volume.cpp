@@ -60,6 +60,10 @@ std::shared_ptr<const Volume> volumeOfPieces(Communicator& ranks, const VolumePi
     const auto all = gatherValues(ranks, Known{piece.whole, piece.type, !isEmpty(piece.region)});
     const auto first = std::ranges::find(all, true, &Known::has);
     if (first == all.end()) throw Error("the volume has no voxels", "the volume", "give one that has some");
+    for (const Known& other : all)
+        if (other.has && (other.type != first->type || other.whole.dims != first->whole.dims))
+            throw Error("its pieces have values of different types, or other extents", "the volume",
+                        "give pieces of one volume");
     Geometry whole = first->whole;
     whole.referenceLength = whole.d0();
     const SampleType type = first->type;

@@ -17,8 +17,8 @@ struct VolumePiece {
 };
 
 /// The volume as loadOnRanks() gives it: in blocks with `reach` voxels around them, or below `layout.smallest` voxels
-/// as a whole on every rank. Where geometries or types differ those of the first rank that has voxels hold. Collective:
-/// throws Error where pieces leave voxels out, or there are none.
+/// as a whole on every rank. Where the volume lies in the world says the first rank that has voxels. Collective:
+/// throws Error where pieces leave voxels out, differ in type or extents, or there are none.
 std::shared_ptr<const Volume> volumeOfPieces(Communicator& ranks, const VolumePiece& piece, int reach,
                                              const RankLayout& layout = {});
 

@@ -7,7 +7,7 @@ namespace pellucid {
 
 /// Null, as it is at first: the process works alone.
 Communicator* ranksOfProcess();
-/// Set once, before any work; outlives it.
+/// Set before any work on them, which they outlive; null: the process works alone again.
 void setRanksOfProcess(Communicator* ranks);
 
 } // namespace pellucid

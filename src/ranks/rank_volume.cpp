@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <sstream>
 
 #include "volume/excerpt.h"
 #include "volume/file_contents.h"
@@ -26,6 +28,41 @@ std::uint64_t invalidIn(const BlockVolume& block) {
         for (std::size_t i = row; i < row + static_cast<std::size_t>(voxels); ++i) count += !block.stored->isValid(i);
     });
     return count;
+}
+
+/// What an error says, for other ranks.
+std::string told(char kind, const Error& e) {
+    return kind + std::to_string(static_cast<int>(e.remedy())) + "\n" + e.problem() + "\n" + e.where() + "\n" +
+           e.whatToDo();
+}
+[[noreturn]] void throwTold(const std::string& text) {
+    std::istringstream lines(text);
+    std::string head, problem, where, whatToDo;
+    for (std::string* part : {&head, &problem, &where, &whatToDo}) std::getline(lines, *part);
+    const auto remedy = static_cast<Remedy>(std::stoi(head.substr(1)));
+    if (head[0] == 'u') throw UsageError(problem, where, whatToDo, remedy);
+    if (head[0] == 'f') throw FileError(problem, where, whatToDo, remedy);
+    throw Error(problem, where, whatToDo, remedy);
+}
+
+/// What read() returns. Where a rank cannot read, all throw what the first of those has to say, so that they stay in
+/// step when somebody passes over it.
+template <class Read>
+auto readTogether(Communicator& ranks, const Read& read) {
+    std::optional<decltype(read())> result;
+    std::string failure;
+    try {
+        result.emplace(read());
+    } catch (const UsageError& e) {
+        failure = told('u', e);
+    } catch (const FileError& e) {
+        failure = told('f', e);
+    } catch (const Error& e) {
+        failure = told('e', e);
+    }
+    for (const auto& text : ranks.gather(std::as_bytes(std::span(failure))))
+        if (!text.empty()) throwTold({reinterpret_cast<const char*>(text.data()), text.size()});
+    return std::move(*result);
 }
 
 /// The geometry of all data, of which `volume` has the voxels from `first` on.
@@ -89,11 +126,11 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLa
         const Decomposition blocks(whole->dims(), ranks.size());
         return volumeOfBlocks(ranks, blockOf(whole, blocks, ranks.rank(), ghosts), *whole);
     }
-    const FileContents contents = contentsOf(source, job);
+    const FileContents contents = readTogether(ranks, [&] { return contentsOf(source, job); });
     const VoxelRegion all = source.region.value_or(VoxelRegion{Int3(0), contents.dims});
     const Int3 dims = all.hi - all.lo;
     const bool known = !isEmpty(all) && voxelCount(dims) >= layout.smallest;
-    if (ranks.size() == 1 || !known) return loadHere(source, job);
+    if (ranks.size() == 1 || !known) return readTogether(ranks, [&] { return loadHere(source, job); });
     if (source.downsample > 1)
         throw UsageError("ranks read data as they are", "--downsample", "leave it out, or use pellucid-cli");
 
@@ -110,7 +147,7 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLa
     const bool none = isEmpty(block.region);
     const VoxelRegion read = none ? VoxelRegion{Int3(0), Int3(1)} : block.region;
     part.region = VoxelRegion{all.lo + read.lo, all.lo + read.hi};
-    Volume volume = loadHere(part, job);
+    Volume volume = readTogether(ranks, [&] { return loadHere(part, job); });
     block.whole = wholeOf(volume, dims, read.lo);
     // That it is a part is no news here.
     const std::vector<std::string> ofBlock = planOf(*part.region, contents.dims, 1).notices();

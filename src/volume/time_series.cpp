@@ -5,6 +5,7 @@
 #include <chrono>
 #include <limits>
 
+#include "base/byte_stream.h"
 #include "base/check.h"
 #include "base/memory.h"
 #include "volume/derived.h"
@@ -33,7 +34,7 @@ std::size_t defaultBudget() {
 
 /// Counts of valid values in equal bins of their range, of all processes.
 std::vector<std::uint32_t> valueCounts(const Volume& volume) {
-    std::vector<std::uint32_t> counts(FrameSummary::kBins, 0);
+    std::vector<double> counts(FrameSummary::kBins, 0.0); // whole numbers, which sums of processes keep
     const ValueRange& range = volume.dataRange();
     const double scale = range.lo < range.hi ? FrameSummary::kBins / (range.hi - range.lo) : 0;
     const bool allValid = volume.invalidCount() == 0;
@@ -48,12 +49,12 @@ std::vector<std::uint32_t> valueCounts(const Volume& volume) {
         });
     };
     if (part.volume != nullptr) withSamples(*part.volume, count);
-    if (const VoxelsElsewhere* elsewhere = volume.elsewhere()) {
-        std::vector<double> all(counts.begin(), counts.end()); // whole numbers that a double holds
-        elsewhere->sum(all);
-        std::ranges::transform(all, counts.begin(), [](double n) { return static_cast<std::uint32_t>(n); });
-    }
-    return counts;
+    if (const VoxelsElsewhere* elsewhere = volume.elsewhere()) elsewhere->sum(counts);
+    constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> shown(counts.size());
+    std::ranges::transform(counts, shown.begin(),
+                           [kMost](double n) { return static_cast<std::uint32_t>(std::min(n, kMost)); });
+    return shown;
 }
 
 /// Why a frame cannot be read. The frame has its own name: another file that is to blame is named, too.
@@ -62,10 +63,16 @@ std::string problemOf(const Error& error, const std::string& path) {
     return isOwn ? error.problem() : error.problem() + ", " + error.where();
 }
 
-/// Of the frame's data, and of its codes of 16 bits with a byte for validity, where not all voxels are valid.
+/// Of the frame's data, and of its codes of 16 bits with a byte for validity, where not all voxels are valid. Of
+/// several processes the most that any has: they forget the same frames, and read them again together.
 std::size_t bytesOf(const Volume& volume) {
-    return (volume.isMapped() ? 0 : volume.memoryBytes()) +
-           (volume.invalidCount() > 0 ? 3 : 2) * voxelCount(volume.dimsHere());
+    const Volume* const here = partHere(volume).volume;
+    std::uint64_t bytes = (here != nullptr && here->isMapped() ? 0 : volume.memoryBytes()) +
+                          (volume.invalidCount() > 0 ? 3 : 2) * voxelCount(volume.dimsHere());
+    if (const VoxelsElsewhere* elsewhere = volume.elsewhere())
+        for (const auto& of : elsewhere->gather(std::as_bytes(std::span(&bytes, 1))))
+            bytes = std::max(bytes, ByteReader(of).take<std::uint64_t>());
+    return bytes;
 }
 
 } // namespace
@@ -162,6 +169,7 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
         m_loading.insert(frame);
     }
     const auto finish = [&](std::shared_ptr<const Volume> volume) {
+        const std::size_t bytes = volume ? bytesOf(*volume) : 0;
         const std::lock_guard lock(m_mutex);
         m_loading.erase(frame);
         if (volume) {
@@ -170,7 +178,7 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
             if (isNew) entry.used = m_used.insert(m_used.begin(), frame);
             entry.data = volume;
             m_entryBytes -= entry.bytes;
-            entry.bytes = bytesOf(*volume);
+            entry.bytes = bytes;
             m_entryBytes += entry.bytes;
             m_frameBytes = std::max(m_frameBytes, entry.bytes);
             touch(entry);

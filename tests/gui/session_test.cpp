@@ -19,6 +19,7 @@
 #include <QSignalSpy>
 #include <QTemporaryDir>
 
+#include "dialogs/ask_file.h"
 #include "render/camera_motion.h"
 #include "session/recovery.h"
 #include "support/random_sessions.h"
@@ -508,4 +509,28 @@ TEST_CASE("work that cannot be restored yet stays, whatever is opened then", "[s
     CHECK(recoverableSessions(folder.toStdString()).size() == 1);
     std::filesystem::remove_all(folder.toStdString());
     qunsetenv("XDG_DATA_HOME");
+}
+
+TEST_CASE("a file gets the ending of the kind that was chosen", "[session]") {
+    const QString presets = "Presets of ParaView (*.paraview.json)";
+    CHECK(withEndingOf("skull", presets) == "skull.paraview.json");
+    CHECK(withEndingOf("skull.json", presets) == "skull.paraview.json");
+    CHECK(withEndingOf("skull.paraview.json", presets) == "skull.paraview.json");
+    CHECK(withEndingOf("skull", "All files") == "skull");
+}
+
+TEST_CASE("a preset for ParaView is written, and the transfer function stays to be saved", "[session]") {
+    OpenWindow w;
+    w.document().setTf(tents(2), "Tents");
+    w.settle();
+    SaveController& saving = w.saving();
+    const QTemporaryDir folder;
+    const QString path = folder.filePath("shells.paraview.json");
+    REQUIRE(saving.saveTf(path));
+    nlohmann::json presets;
+    std::ifstream(path.toStdString()) >> presets;
+    REQUIRE(presets.size() == 1);
+    CHECK(presets[0]["Name"] == "shells");
+    CHECK(saving.tfPath().isEmpty());
+    CHECK(w.window.isWindowModified());
 }

@@ -1,8 +1,11 @@
 // What is found out of a volume block by block is what is found out of all of it.
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "ranks/rank_volume.h"
 #include "saliency/saliency_field.h"
@@ -11,6 +14,7 @@
 #include "support/thread_ranks.h"
 #include "volume/excerpt.h"
 #include "volume/histogram.h"
+#include "volume/loader.h"
 #include "volume/voxel_survey.h"
 
 using namespace pellucid;
@@ -143,4 +147,32 @@ TEST_CASE("each rank reads its block of a file, and a broken file is an error of
     });
     source.raw->dims.z = 34;
     CHECK_THROWS_AS(onRanks(3, [&](Communicator& ranks) { loadOnRanks(ranks, source, layout); }), FileError);
+}
+
+TEST_CASE("where one rank cannot read its block all say so, and stay in step", "[ranks]") {
+    // Noise packs badly: of the first two thirds of the file rank 0 finds its half of the slices.
+    std::mt19937 random(7);
+    std::vector<std::uint8_t> noise(std::size_t{40} * 40 * 64);
+    for (std::uint8_t& v : noise) v = static_cast<std::uint8_t>(random());
+    Geometry geometry;
+    geometry.dims = {40, 40, 64};
+    const TempFolder folder;
+    const std::string path = folder.path("noise.nrrd");
+    writeNrrd(Volume(geometry, SampleArray<std::uint8_t>(noise)), path);
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) * 2 / 3);
+    VolumeSource source;
+    source.path = path;
+    std::array<int, 2> failed{}, agreed{};
+    onRanks(2, [&](Communicator& ranks) {
+        const auto rank = static_cast<std::size_t>(ranks.rank());
+        try {
+            loadOnRanks(ranks, source, {.smallest = 1});
+        } catch (const Error&) {
+            failed[rank] = 1;
+        }
+        // What comes next is the same for both.
+        agreed[rank] = gatherValues(ranks, 10 + ranks.rank()) == std::vector<int>{10, 11};
+    });
+    CHECK(failed == std::array<int, 2>{1, 1});
+    CHECK(agreed == std::array<int, 2>{1, 1});
 }

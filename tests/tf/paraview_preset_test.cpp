@@ -30,8 +30,9 @@ double between(const json& points, std::size_t each, std::size_t number, double 
 
 TransferFunction withSteps() {
     TransferFunction tf = tents(3, 0.4);
-    tf.points = {{0, 0.1, {1, 0, 0}, false, {}},   {0.25, 0.1, {1, 0, 0}, false, {}}, {0.25, 0.6, {0, 1, 0}, false, {}},
-                 {0.75, 0.6, {0, 1, 0}, false, {}}, {1, 0.2, {0, 0, 1}, false, {}},   {1, 0.9, {0, 0, 1}, false, {}}};
+    tf.points = {{0, 0.1, {1, 0, 0}, false, {}},    {0.25, 0.1, {1, 0, 0}, false, {}},
+                 {0.25, 0.6, {0, 1, 0}, false, {}}, {0.75, 0.6, {0, 1, 0}, false, {}},
+                 {1, 0.2, {0, 0, 1}, false, {}},    {1, 0.9, {0, 0, 1}, false, {}}};
     return tf;
 }
 
@@ -61,6 +62,20 @@ TEST_CASE("a preset for ParaView draws what the transfer function says, in data 
             CHECK(between(colors, 4, 2, value) == Approx(tf.color(s).g).margin(1e-4));
         }
     }
+}
+
+TEST_CASE("steps at both ends keep their order in the preset, and its ends their values", "[paraview]") {
+    TransferFunction tf = tents(1, 0.4);
+    tf.points.clear();
+    for (const double x : {0.0, 0.0, 0.5, 1.0, 1.0, 1.0}) tf.points.push_back({x, 0.1, {1, 1, 1}, false, {}});
+    tf.points.back().opacity = 0.7;
+    const json presets = paraViewPreset(tf, {0, 10}, "mine");
+    const json& points = presets[0]["Points"];
+    REQUIRE(points.size() == 6 * 4);
+    CHECK(points[0] == 0.0);
+    CHECK(points[20] == 10.0);
+    CHECK(points[21] == 0.7);
+    for (std::size_t i = 4; i < points.size(); i += 4) CHECK(points[i].get<double>() > points[i - 4].get<double>());
 }
 
 TEST_CASE("what an eye hides is transparent in the preset", "[paraview]") {

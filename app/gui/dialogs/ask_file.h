@@ -17,12 +17,23 @@ inline void keepFolderOf(const QString& key, const QString& path) {
     QSettings().setValue(key, QFileInfo(path).absolutePath());
 }
 
-/// Asks where to write a file, and offers `name`, or a path. What does not end in `ending` gets `suffix`. Empty: the
-/// user gave up.
+/// `path` with the ending of a filter of file dialogs, such as "Presets (*.paraview.json)", unless it has it. What
+/// follows the last dot of that ending is not written twice.
+inline QString withEndingOf(QString path, const QString& filter) {
+    const QString ending = filter.section("(*", -1).section(')', 0, 0), last = "." + ending.section('.', -1);
+    if (ending.isEmpty() || path.endsWith(ending, Qt::CaseInsensitive)) return path;
+    if (path.endsWith(last, Qt::CaseInsensitive)) path.chop(last.size());
+    return path + ending;
+}
+
+/// Asks where to write a file, and offers `name`, or a path. What does not end in `ending` gets `suffix`; where several
+/// filters may be chosen, the ending of any but the first. Empty: the user gave up.
 inline QString askSavePath(QWidget* parent, const QString& title, const QString& key, const QString& name,
                            const QString& filter, const QString& ending, const QString& suffix) {
-    QString path = QFileDialog::getSaveFileName(parent, title, QDir(keptFolder(key)).filePath(name), filter);
+    QString chosen;
+    QString path = QFileDialog::getSaveFileName(parent, title, QDir(keptFolder(key)).filePath(name), filter, &chosen);
     if (path.isEmpty()) return {};
+    if (!chosen.isEmpty() && chosen != filter.section(";;", 0, 0)) path = withEndingOf(path, chosen);
     if (!path.endsWith(ending, Qt::CaseInsensitive)) path += suffix;
     keepFolderOf(key, path);
     return path;

@@ -40,18 +40,18 @@ std::uint64_t programHash() {
 /// Where a rank fails amid a call, the others wait for messages that never come: it takes all with it.
 class Together {
 public:
-    Together() : m_exceptions(std::uncaught_exceptions()) {}
+    explicit Together(MPI_Comm group) : m_group(group), m_exceptions(std::uncaught_exceptions()) {}
     ~Together() {
         if (std::uncaught_exceptions() <= m_exceptions) return;
-        std::fprintf(stderr,
-                     "pellucid-mpi: error: a rank has no memory for the messages of others, or the network failed, "
-                     "use more ranks or machines with more memory\n");
-        MPI_Abort(MPI_COMM_WORLD, 1);
+        std::fprintf(stderr, "error: a rank has no memory for the messages of others, or the network failed, "
+                             "use more ranks or machines with more memory\n");
+        MPI_Abort(m_group, 1);
     }
     Together(const Together&) = delete;
     Together& operator=(const Together&) = delete;
 
 private:
+    MPI_Comm m_group;
     int m_exceptions;
 };
 
@@ -111,6 +111,7 @@ void MpiRanks::requireAll() {
     int isMain = 0;
     MPI_Is_thread_main(&isMain);
     PELLUCID_CHECK(isMain != 0);
+    if (m_lost) throw RankLost(); // others are past this call
     ++m_traffic.rounds;
     int well = 1, all = 0;
     require(MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm), "reach all ranks");
@@ -151,7 +152,7 @@ MpiRanks::Ending MpiRanks::leave(const Ending& mine) {
 
 std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
     requireAll();
-    const Together together;
+    const Together together(m_group->comm);
     const auto count = static_cast<std::size_t>(m_size);
     std::vector<std::uint64_t> send(count, 0), receive(count, 0);
     for (const RankMessage& message : messages) send[static_cast<std::size_t>(message.rank)] = message.bytes.size();
@@ -193,7 +194,7 @@ std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
 
 void MpiRanks::sum(std::span<double> values) {
     requireAll();
-    const Together together;
+    const Together together(m_group->comm);
     const int count = static_cast<int>(values.size());
     std::vector<double> other(values.size());
     // Pairs, pairs of pairs, …: the order depends on the number of ranks alone.
@@ -214,7 +215,7 @@ void MpiRanks::sum(std::span<double> values) {
 
 std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> bytes) {
     requireAll();
-    const Together together;
+    const Together together(m_group->comm);
     const auto count = static_cast<std::size_t>(m_size);
     const std::uint64_t mine = bytes.size();
     std::vector<std::uint64_t> sizes(count);

@@ -15,7 +15,7 @@ public:
     MpiRanks(int& argc, char**& argv);
     /// In a program that has begun MPI: the ranks of `comm`, which points to an MPI_Comm, with messages of their own.
     explicit MpiRanks(const void* comm);
-    /// Where leave() was not called and another rank still waits, that one ends, too.
+    /// Where leave() was not called and there are other ranks, the whole program is ended, since they may wait.
     ~MpiRanks() override;
     MpiRanks(const MpiRanks&) = delete;
     MpiRanks& operator=(const MpiRanks&) = delete;

@@ -40,7 +40,8 @@ void writeTfFile(const TransferFunction& tf, const ValueRange& window, const std
     if (!isWrittenForOthers(path)) return writeTf(tf, path);
     std::string name = std::filesystem::path(path).filename().string();
     name.resize(name.size() - std::string(kParaViewSuffix).size());
-    writeTextAtomically(path, paraViewPreset(tf, window, name).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    writeTextAtomically(
+        path, paraViewPreset(tf, window, name).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 TransferFunction loadTf(const std::string& specOrPath) {

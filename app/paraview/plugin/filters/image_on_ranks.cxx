@@ -36,7 +36,7 @@ namespace pellucid::paraview {
 
 namespace {
 
-/// ParaView without MPI: a process by itself.
+/// A process that MPI has not started.
 class AloneRank final : public Communicator {
 public:
     int rank() const override { return 0; }
@@ -74,6 +74,11 @@ MpiRanks::Ending endingOf(Communicator& ranks, const std::function<void(Communic
     }
 }
 
+std::string nameOf(vtkDataArray& values) {
+    const char* const name = values.GetName();
+    return name != nullptr ? name : "the values";
+}
+
 SampleType typeOf(vtkDataArray& values) {
     switch (values.GetDataType()) {
     case VTK_UNSIGNED_CHAR:
@@ -94,7 +99,7 @@ SampleType typeOf(vtkDataArray& values) {
     case VTK_DOUBLE:
         return SampleType::F64;
     default:
-        throw Error("the values are integers of 64 bits, which cannot be measured", values.GetName(),
+        throw Error("values of this type cannot be measured", nameOf(values),
                     "convert them with the filter Calculator");
     }
 }
@@ -131,25 +136,35 @@ std::string runOnRanks(int threads, const std::function<void(Communicator&)>& wo
     vtkMultiProcessController* const controller = vtkMultiProcessController::GetGlobalController();
     auto* const mpi = controller != nullptr ? vtkMPICommunicator::SafeDownCast(controller->GetCommunicator()) : nullptr;
     if (mpi == nullptr || mpi->GetMPIComm() == nullptr || mpi->GetMPIComm()->GetHandle() == nullptr) {
-        if (threads > 0) setThreadCount(threads);
+        setThreadCount(threads);
         AloneRank alone;
         return endingOf(alone, work).message;
     }
-    MpiRanks ranks(mpi->GetMPIComm()->GetHandle());
-    const int cores = static_cast<int>(std::thread::hardware_concurrency());
-    setThreadCount(threads > 0 ? threads : std::max(1, cores / ranks.onThisMachine()));
-    const MpiRanks::Ending ending = ranks.leave(endingOf(ranks, work));
+    std::optional<MpiRanks> ranks;
+    try {
+        ranks.emplace(mpi->GetMPIComm()->GetHandle());
+    } catch (const Error& e) {
+        return e.what();
+    }
+    const MpiRanks::Ending ending = ranks->leave(endingOf(*ranks, [&](Communicator& all) {
+        const int cores = static_cast<int>(std::thread::hardware_concurrency());
+        setThreadCount(threads > 0 ? threads : std::max(1, cores / ranks->onThisMachine()));
+        work(all);
+    }));
     if (ending.status == 0) return {};
     return ending.message.empty() ? "another process cannot go on" : ending.message;
 }
 
 ImagePiece::ImagePiece(vtkImageData* image, vtkDataArray* values) {
-    if (image == nullptr || values == nullptr || values->GetNumberOfTuples() == 0) return;
+    if (image == nullptr || image->GetNumberOfPoints() == 0) return;
+    if (values == nullptr)
+        throw Error("the image has no such values at its points", "Input Array",
+                    "choose another, or apply the filter Cell Data to Point Data first");
     if (values->GetNumberOfComponents() != 1)
-        throw Error("the values have several components", values->GetName(),
+        throw Error("the values have several components", nameOf(*values),
                     "choose an array with one, or take one out with the filter Calculator");
     if (values->GetNumberOfTuples() != image->GetNumberOfPoints())
-        throw Error("the values belong to cells", values->GetName(), "apply the filter Cell Data to Point Data first");
+        throw Error("the values belong to cells", nameOf(*values), "apply the filter Cell Data to Point Data first");
     piece.type = typeOf(*values);
     piece.whole = geometryOf(*image);
     const int* const extent = image->GetExtent();
