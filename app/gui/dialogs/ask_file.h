@@ -20,6 +20,7 @@ inline void keepFolderOf(const QString& key, const QString& path) {
 /// `path` with the ending of a filter of file dialogs, such as "Presets (*.paraview.json)", unless it has it. What
 /// follows the last dot of that ending is not written twice.
 inline QString withEndingOf(QString path, const QString& filter) {
+    if (!filter.contains("(*")) return path;
     const QString ending = filter.section("(*", -1).section(')', 0, 0), last = "." + ending.section('.', -1);
     if (ending.isEmpty() || path.endsWith(ending, Qt::CaseInsensitive)) return path;
     if (path.endsWith(last, Qt::CaseInsensitive)) path.chop(last.size());
