@@ -91,26 +91,17 @@ std::shared_ptr<const Volume> volumeOfPieces(Communicator& ranks, const VolumePi
 
 std::vector<float> valuesOnPiece(Communicator& ranks, const Volume& volume, const Grid<float>& field,
                                  const VoxelRegion& piece) {
-    const VolumePart part = partHere(volume);
     PELLUCID_CHECK(field.dims() == volume.dimsHere());
+    VolumePart part = partHere(volume);
+    const bool isWhole = volume.elsewhere() == nullptr; // then nobody has to be asked
+    if (isWhole) part.own = piece;
     std::vector<float> own;
-    if (volume.elsewhere() == nullptr) { // every rank has all of it
-        if (!isEmpty(piece))
-            for (int k = piece.lo.z; k < piece.hi.z; ++k)
-                for (int j = piece.lo.y; j < piece.hi.y; ++j) {
-                    const auto row =
-                        field.begin() + static_cast<std::ptrdiff_t>(voxelIndex(volume.dims(), piece.lo.x, j, k));
-                    own.insert(own.end(), row, row + (piece.hi.x - piece.lo.x));
-                }
-        return own;
-    }
-    VoxelRegion from;
-    if (part.volume != nullptr) {
-        from = part.own;
+    if (part.volume != nullptr && !isEmpty(part.own))
         part.forOwnRows(0, part.ownLayers(), [&](const Int3&, std::size_t index, int voxels) {
             own.insert(own.end(), &field[index], &field[index] + voxels);
         });
-    }
+    if (isWhole) return own;
+    const VoxelRegion from = part.volume != nullptr ? part.own : VoxelRegion{};
     const auto bytes = exchangeVoxels(ranks, from, std::as_bytes(std::span(own)), piece, sizeof(float));
     std::vector<float> values(bytes.size() / sizeof(float));
     std::memcpy(values.data(), bytes.data(), bytes.size());

@@ -29,6 +29,22 @@ struct Asked {
     int threads = 0;          ///< of each process; 0: what its machine has for it
 };
 
+/// What a filter is asked for.
+template <class Filter>
+Asked askedOf(Filter& filter) {
+    Asked asked;
+    asked.transferFunction = filter.GetTransferFunction();
+    asked.byDirection = filter.GetByDirection();
+    filter.GetDirection(asked.azimuth, asked.elevation);
+    filter.GetCameraPosition(asked.position.data());
+    filter.GetCameraFocalPoint(asked.focalPoint.data());
+    filter.GetCameraViewUp(asked.viewUp.data());
+    asked.viewAngle = filter.GetCameraViewAngle();
+    asked.parallel = filter.GetParallelProjection();
+    asked.parallelScale = filter.GetParallelScale();
+    return asked;
+}
+
 /// Calls work(ranks) with the processes that ParaView runs on, as one of which this one is. Returns what went wrong, as
 /// the first process that can tell says it, on all processes; empty where nothing did.
 std::string runOnRanks(int threads, const std::function<void(Communicator&)>& work);

@@ -32,17 +32,7 @@ int vtkPellucidOptimize::RequestData(vtkInformation*, vtkInformationVector** inp
     namespace pv = pellucid::paraview;
     vtkImageData* const input = vtkImageData::GetData(inputs[0]);
     vtkTable* const output = vtkTable::GetData(outputs);
-    pv::Asked asked;
-    asked.transferFunction = this->TransferFunction;
-    asked.byDirection = this->ByDirection;
-    asked.azimuth = this->Direction[0];
-    asked.elevation = this->Direction[1];
-    std::copy_n(this->CameraPosition, 3, asked.position.begin());
-    std::copy_n(this->CameraFocalPoint, 3, asked.focalPoint.begin());
-    std::copy_n(this->CameraViewUp, 3, asked.viewUp.begin());
-    asked.viewAngle = this->CameraViewAngle;
-    asked.parallel = this->ParallelProjection;
-    asked.parallelScale = this->ParallelScale;
+    const pv::Asked asked = pv::askedOf(*this);
 
     pv::Answer answer;
     const std::string problem = pv::runOnRanks(this->Threads, [&](pellucid::Communicator& ranks) {

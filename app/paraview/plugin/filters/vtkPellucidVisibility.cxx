@@ -33,17 +33,7 @@ int vtkPellucidVisibility::RequestData(vtkInformation*, vtkInformationVector** i
     namespace pv = pellucid::paraview;
     vtkImageData* const input = vtkImageData::GetData(inputs[0]);
     vtkImageData* const output = vtkImageData::GetData(outputs);
-    pv::Asked asked;
-    asked.transferFunction = this->TransferFunction;
-    asked.byDirection = this->ByDirection;
-    asked.azimuth = this->Direction[0];
-    asked.elevation = this->Direction[1];
-    std::copy_n(this->CameraPosition, 3, asked.position.begin());
-    std::copy_n(this->CameraFocalPoint, 3, asked.focalPoint.begin());
-    std::copy_n(this->CameraViewUp, 3, asked.viewUp.begin());
-    asked.viewAngle = this->CameraViewAngle;
-    asked.parallel = this->ParallelProjection;
-    asked.parallelScale = this->ParallelScale;
+    const pv::Asked asked = pv::askedOf(*this);
 
     pv::Seen seen;
     const std::string problem = pv::runOnRanks(this->Threads, [&](pellucid::Communicator& ranks) {
