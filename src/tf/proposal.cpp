@@ -315,7 +315,7 @@ void proposeValues(Proposal& result, const Evidence& e, const std::vector<double
 
 /// Blue below 0, red above, nothing near 0.
 void proposeSigned(Proposal& result, const Evidence& e, double sigma) {
-    constexpr double kSignificant = 2, kMostOfRange = 0.35;
+    constexpr double kSignificant = 3, kMostOfRange = 0.35;
     const double end = std::max(std::abs(e.window.lo), std::abs(e.window.hi));
     const double weak = std::min(kSignificant * sigma, kMostOfRange * end), strong = (weak + end) / 2;
     const std::vector<Rgb> colors = divergingColors();
@@ -332,7 +332,7 @@ void proposeSigned(Proposal& result, const Evidence& e, double sigma) {
     add("strongly positive", strong, end, end, 3, kStrong);
     result.background = ValueRange{std::max(-weak, e.window.lo), std::min(weak, e.window.hi)};
     result.why.push_back("values of both signs about 0: blue below, red above; nearer to 0 than " + e.text(weak) +
-                         " (two robust standard deviations, or 35 % of the range) is left out");
+                         " (three robust standard deviations, or 35 % of the range) is left out");
     finish(result, e, std::move(parts));
 }
 

@@ -1,6 +1,7 @@
 // The automatic start: kinds of data, windows, borders, and a transfer function that can be used as it is.
 #include "tf/proposal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -299,6 +300,25 @@ TEST_CASE("values of both signs diverge about 0", "[proposal]") {
     const std::vector<double> opacity = featureOpacities(p.tf);
     CHECK(opacity[0] > opacity[1]);
     CHECK(opacity[3] > opacity[2]);
+}
+
+TEST_CASE("of a statistical map spots are drawn, and next to nothing of its noise", "[proposal]") {
+    // The noise has a standard deviation of 1: 0.27 % of it lies beyond three, 4.6 % beyond two.
+    std::mt19937 random(12);
+    std::normal_distribution<double> noise(0, 1);
+    std::vector<double> spot, rest;
+    const Proposal p = propose(cubeOf<float>(48, [&](double r, const Vec3& v) {
+        if (r > 0.9) return 0.0;
+        const bool isSpot = glm::length(v - Vec3(0.3, 0, 0.2)) < 0.2;
+        (isSpot ? spot : rest).push_back(isSpot ? 8 + 0.2 * noise(random) : noise(random));
+        return (isSpot ? spot : rest).back();
+    }));
+    REQUIRE(p.kind == DataKind::Signed);
+    const auto isDrawn = [&](double value) {
+        return p.tf.opacity((value - p.window.lo) / (p.window.hi - p.window.lo)) > 0;
+    };
+    CHECK(std::ranges::all_of(spot, isDrawn));
+    CHECK(static_cast<double>(std::ranges::count_if(rest, isDrawn)) < 0.005 * static_cast<double>(rest.size()));
 }
 
 TEST_CASE("CT: tissues between half-way borders, air left out, metal beyond the window", "[proposal][ct]") {
