@@ -88,23 +88,36 @@ struct WarpedRow {
     }
 };
 
-/// `store(pixel, color)` for all pixels of a tile; the colour is straight.
-template <class Store>
-void warpTileTo(const ShearedScene& s, const PacketTile& tile, const Store& store) {
+/// A pixel as floats, wherever it lies in memory.
+struct Rgba {
+    float red, green, blue, alpha;
+};
+
+/// The pixels, bit n for number n, around which some ray may have met something.
+inline unsigned drawnOf(const ShearedScene& s, const WarpedRow& pixels) {
+    unsigned bits = bitsOf(pixels.inside);
+    for (unsigned left = bits; left != 0; left &= left - 1) {
+        const int n = __builtin_ctz(left), row = pixels.row[n], column = pixels.column[n];
+        if (column + 2 < s.extents[2 * row] || column - 1 > s.extents[2 * row + 1]) bits &= ~(1u << n);
+    }
+    return bits;
+}
+
+/// Writes all pixels of a tile: `toPixel` makes one of a straight colour.
+template <class Pixel, class ToPixel>
+void warpTileTo(const ShearedScene& s, const PacketTile& tile, Pixel* pixels, const ToPixel& toPixel) {
     const PacketScene& scene = *s.scene;
     for (int y = tile.y0; y < tile.y1; ++y) {
         const Vec4 behind = behindRow(scene, y);
-        std::int64_t to = static_cast<std::int64_t>(y) * scene.width + tile.x0;
+        const Pixel empty = toPixel(behind);
+        Pixel* const row = pixels + static_cast<std::int64_t>(y) * scene.width;
         for (int x = tile.x0; x < tile.x1; x += kWide) {
-            const WarpedRow pixels(s, x, y);
-            const unsigned bits = bitsOf(pixels.inside);
             const int count = smaller(kWide, tile.x1 - x);
-            for (int n = 0; n < count; ++n, ++to) {
-                Vec4 color = behind;
-                const int row = pixels.row[n], column = pixels.column[n];
-                if ((bits >> n & 1u) && column + 2 >= s.extents[2 * row] && column - 1 <= s.extents[2 * row + 1])
-                    color = over(pixels.at(s, n), behind, scene.hasBackground);
-                store(to, color);
+            for (int n = 0; n < count; ++n) row[x + n] = empty;
+            const WarpedRow rays(s, x, y);
+            for (unsigned left = drawnOf(s, rays); left != 0; left &= left - 1) {
+                const int n = __builtin_ctz(left);
+                if (n < count) row[x + n] = toPixel(over(rays.at(s, n), behind, scene.hasBackground));
             }
         }
     }
@@ -112,10 +125,10 @@ void warpTileTo(const ShearedScene& s, const PacketTile& tile, const Store& stor
 
 void warpTile(const ShearedScene& s, const PacketTile& tile) {
     if (s.pixels)
-        warpTileTo(s, tile, [&](std::int64_t pixel, Vec4 color) { s.pixels[pixel] = pixelOf(color); });
+        warpTileTo(s, tile, s.pixels, pixelOf);
     else
-        warpTileTo(s, tile, [&](std::int64_t pixel, Vec4 color) {
-            __builtin_memcpy(s.scene->rgba + 4 * pixel, &color, sizeof color);
+        warpTileTo(s, tile, reinterpret_cast<Rgba*>(s.scene->rgba), [](Vec4 color) {
+            return Rgba{color[0], color[1], color[2], color[3]};
         });
 }
 
