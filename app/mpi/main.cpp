@@ -36,8 +36,10 @@ Outcome runOnRanks(const Program& program, const std::vector<std::string>& argum
     for (const std::uint64_t free : gatherValues(ranks, availableMemoryBytes())) budget = std::min(budget, free / 4);
     TimeSeries::setDefaultBudget(static_cast<std::size_t>(budget));
     keepWrittenFiles(ranks.rank() == 0);
-    setVolumeLoader(
-        [&ranks](const VolumeSource& source, const JobControl& job) { return loadOnRanks(ranks, source, {}, job); });
+    static RankLayout layout;
+    setVolumeLoader([&ranks](const VolumeSource& source, const JobControl& job) {
+        return loadOnRanks(ranks, source, layout, job);
+    });
     return run(program, arguments);
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "engines/renderer_probe.h"
+#include "ranks/block_balance.h"
 #include "ranks/process_ranks.h"
 #include "ranks/rank_engine.h"
 #include "ranks/rank_renderer.h"
@@ -100,6 +101,11 @@ std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr
     if (choice == EngineChoice::Gl || choice == EngineChoice::Slices)
         return std::make_unique<GlElseCpu>(std::move(volume));
     return makeCpuRenderer(std::move(volume));
+}
+
+bool cutBlocksByWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, const MemoryUse& then,
+                     const JobControl& job) {
+    return volume.elsewhere() != nullptr && cutByWork(volume, tf, clipping, then, job);
 }
 
 } // namespace pellucid

@@ -5,6 +5,7 @@
 
 #include "render/engine_choice.h"
 #include "render/image_renderer.h"
+#include "volume/memory_use.h"
 
 namespace pellucid {
 
@@ -18,5 +19,10 @@ std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_pt
 /// reference choice draws with the cpu renderer, since no other image is defined; slices are what gl draws. Pictures
 /// with an overlay are the cpu renderer's, whatever is chosen: name() is that of the renderer that drew last.
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
+
+/// Where this process is one of several that have blocks of the volume: cutByWork(), so that it is to be read again if
+/// this is true. Else false.
+bool cutBlocksByWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, const MemoryUse& then,
+                     const JobControl& job = {});
 
 } // namespace pellucid

@@ -16,6 +16,7 @@ public:
     /// null: the same everywhere.
     Decomposition(const Int3& dims, int blocks, const Grid<double>* work = nullptr);
 
+    const Int3& dims() const { return m_dims; }
     const std::vector<VoxelRegion>& blocks() const { return m_blocks; }
     /// The block that holds a voxel.
     int blockOf(const Int3& voxel) const;

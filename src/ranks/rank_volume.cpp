@@ -82,7 +82,11 @@ BlockVolume RankVoxels::blockOf(const Volume& volume) const {
     return block;
 }
 
-Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like) {
+Decomposition RankLayout::blocksOf(const Int3& dims, int ranks) const {
+    return cut && cut->dims() == dims ? *cut : Decomposition(dims, ranks);
+}
+
+Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like, RankLayout* layout) {
     OfAll mine;
     mine.whole = block.whole;
     if (!block.isEmpty() && block.stored->hasValidVoxels()) {
@@ -108,7 +112,7 @@ Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like
             range.lo < range.hi ? std::make_shared<const Volume>(block.stored->withRange(range)) : block.stored;
     block.stored.reset();
     const Geometry whole = block.whole;
-    parts.elsewhere = std::make_shared<const RankVoxels>(ranks, std::move(block));
+    parts.elsewhere = std::make_shared<const RankVoxels>(ranks, std::move(block), layout);
     Volume volume(whole, std::move(parts));
     volume.title = like.title;
     volume.format = like.format;
@@ -116,15 +120,15 @@ Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like
     return volume;
 }
 
-Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLayout& layout, const JobControl& job) {
+Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, RankLayout& layout, const JobControl& job) {
     const Int3 ghosts(std::max(kRayGhosts, source.then.reach));
     if (source.isSample()) {
         // Made by a rule: each rank makes all of it, and keeps its block.
         Volume all = loadHere(source, job);
         if (ranks.size() == 1 || all.size() < layout.smallest) return all;
         const auto whole = std::make_shared<const Volume>(std::move(all));
-        const Decomposition blocks(whole->dims(), ranks.size());
-        return volumeOfBlocks(ranks, blockOf(whole, blocks, ranks.rank(), ghosts), *whole);
+        const Decomposition blocks = layout.blocksOf(whole->dims(), ranks.size());
+        return volumeOfBlocks(ranks, blockOf(whole, blocks, ranks.rank(), ghosts), *whole, &layout);
     }
     const FileContents contents = readTogether(ranks, [&] { return contentsOf(source, job); });
     const VoxelRegion all = source.region.value_or(VoxelRegion{Int3(0), contents.dims});
@@ -135,7 +139,7 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLa
         throw UsageError("ranks read data as they are", "--downsample", "leave it out, or use pellucid-cli");
 
     BlockVolume block;
-    block.blocks = Decomposition(dims, ranks.size());
+    block.blocks = layout.blocksOf(dims, ranks.size());
     block.own = ranks.rank();
     block.region = widened(block.block(), ghosts, dims);
     VolumeSource part = source;
@@ -154,7 +158,7 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, const RankLa
     std::erase_if(volume.notices, [&](const std::string& notice) { return std::ranges::count(ofBlock, notice) > 0; });
     const auto stored = std::make_shared<const Volume>(std::move(volume));
     if (!none) block.stored = stored;
-    Volume result = volumeOfBlocks(ranks, std::move(block), *stored);
+    Volume result = volumeOfBlocks(ranks, std::move(block), *stored, &layout);
     if (source.region) {
         const ExcerptPlan plan = planOf(all, contents.dims, 1);
         result.excerpt = plan.excerpt;

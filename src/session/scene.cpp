@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engines/engines.h"
 #include "optimize/views/opening_view.h"
 #include "render/published_engine.h"
 #include "session/scene_data.h"
@@ -267,6 +268,22 @@ Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry) {
     return camera;
 }
 
+namespace {
+
+/// The scene with its volumes read anew.
+Scene readAgain(Scene scene, const MemoryUse& then, const JobControl& job) {
+    const auto proposal = scene.proposal;
+    const Camera camera = scene.camera;
+    Session session = std::move(scene.session);
+    scene = {}; // its memory is wanted
+    scene = resolve(std::move(session), {}, then, job);
+    scene.proposal = proposal;
+    scene.camera = camera;
+    return scene;
+}
+
+} // namespace
+
 Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (inputs.session.isEmpty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
     Session session = inputs.session;
@@ -320,6 +337,8 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
                                                      inputs.projection.value_or(Projection::Perspective))
                                     : cameraOf(inputs, scene.volume->geometry());
     if (inputs.camera || inputs.view || inputs.namedView || inputs.projection) scene.session.camera = scene.camera;
+    if (cutBlocksByWork(*scene.volume, shownTf(scene.tf), *scene.session.clipping, inputs.then, {job.stop, {}}))
+        scene = readAgain(std::move(scene), inputs.then, job);
     return scene;
 }
 

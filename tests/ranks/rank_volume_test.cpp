@@ -166,7 +166,8 @@ TEST_CASE("where one rank cannot read its block all say so, and stay in step", "
     onRanks(2, [&](Communicator& ranks) {
         const auto rank = static_cast<std::size_t>(ranks.rank());
         try {
-            loadOnRanks(ranks, source, {.smallest = 1});
+            RankLayout layout{.smallest = 1};
+            loadOnRanks(ranks, source, layout);
         } catch (const Error&) {
             failed[rank] = 1;
         }

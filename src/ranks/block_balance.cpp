@@ -1,0 +1,78 @@
+#include "ranks/block_balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/memory.h"
+#include "ranks/rank_volume.h"
+#include "render/drawn_cells.h"
+#include "volume/fetched_values.h"
+#include "volume/voxel_loops.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kWorthIt = 5.0 / 6; ///< of the work of the slowest rank
+
+/// The largest part of the work that a block has.
+double largestShare(const Decomposition& blocks, const Grid<double>& work, const Int3& dims) {
+    std::vector<double> of(blocks.blocks().size(), 0.0);
+    const CellGrid grid(Int3(0), dims);
+    double all = 0;
+    for (std::size_t at = 0; at < work.size(); ++at) { // in one order: ranks have to agree
+        const Int3 cell = voxelAt(grid.cells, at);
+        const int block = blocks.blockOf({grid.begin(0, cell.x), grid.begin(1, cell.y), grid.begin(2, cell.z)});
+        of[static_cast<std::size_t>(block)] += work[at];
+        all += work[at];
+    }
+    return std::ranges::max(of) / all;
+}
+
+} // namespace
+
+Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping,
+                       const JobControl& job) {
+    const CellGrid grid(Int3(0), volume.dims());
+    Grid<double> work(grid.cells);
+    const std::vector<VoxelPlane> planes = planesInVoxels(clipping, volume.geometry());
+    const TfSampler sampler(tf);
+    const auto wanted = [&](const auto& ask) {
+        for (std::size_t i = 0; i < work.size(); ++i) ask(grid.voxelIn(voxelAt(grid.cells, i)));
+    };
+    withValues(volume, wanted, [&](const auto& values) {
+        forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
+            const Int3 v = grid.voxelIn(cell);
+            const double s = volume.intensityOfValue(values(voxelIndex(volume.dims(), v.x, v.y, v.z)));
+            const bool isDrawn = !std::isnan(s) && sampler.opacity(s) > 0 && keeps(planes, Vec3(v));
+            work[at] = isDrawn ? 1 : kEmptyWork;
+        });
+    });
+    return work;
+}
+
+bool cutByWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, const MemoryUse& then,
+               const JobControl& job) {
+    const auto* const voxels = dynamic_cast<const RankVoxels*>(volume.elsewhere());
+    if (voxels == nullptr || voxels->layout() == nullptr) return false;
+    Communicator& ranks = voxels->ranks();
+    const Grid<double> work = sweepWork(volume, tf, clipping, job);
+    const Decomposition next(volume.dims(), ranks.size(), &work);
+    if (largestShare(next, work, volume.dims()) > kWorthIt * largestShare(voxels->blocks(), work, volume.dims()))
+        return false;
+    const Int3 dims = [&] {
+        const VoxelRegion region = widened(next.blocks()[static_cast<std::size_t>(ranks.rank())],
+                                           Int3(std::max(kRayGhosts, then.reach)), volume.dims());
+        return isEmpty(region) ? Int3(0) : region.hi - region.lo;
+    }();
+    const std::uint64_t held =
+                            volume.here() != nullptr && !volume.here()->isMapped() ? volume.here()->memoryBytes() : 0,
+                        needed = voxelCount(dims) * bytesPerSample(volume.sampleType()) +
+                                 bytesOf(then, dims, volume.sampleType());
+    const bool hasRoom = needed <= availableMemoryBytes() + held;
+    if (!std::ranges::all_of(gatherValues(ranks, hasRoom), [](bool has) { return has; })) return false;
+    voxels->layout()->cut = next;
+    return true;
+}
+
+} // namespace pellucid
