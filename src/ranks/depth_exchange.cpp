@@ -5,41 +5,9 @@
 
 namespace pellucid {
 
-SweepRect common(const SweepRect& a, const SweepRect& b) {
-    return {std::max(a.firstRow, b.firstRow), std::min(a.endRow, b.endRow), std::max(a.firstCol, b.firstCol),
-            std::min(a.endCol, b.endCol)};
-}
-
 namespace {
 
-constexpr int kTile = 64;                      ///< rays along each side
-constexpr std::size_t kBytesAtOnce = 1u << 20; ///< of depths of the tiles that are under way, per rank
-
-/// Tiles of a rectangle of rays, in rows.
-class Tiles {
-public:
-    explicit Tiles(const SweepRect& all)
-        : m_all(all), m_cols((all.endCol - all.firstCol + kTile - 1) / kTile),
-          m_rows((all.endRow - all.firstRow + kTile - 1) / kTile) {}
-    int count() const { return m_cols * m_rows; }
-    SweepRect at(int tile) const {
-        const int row = m_all.firstRow + tile / m_cols * kTile, col = m_all.firstCol + tile % m_cols * kTile;
-        return common({row, row + kTile, col, col + kTile}, m_all);
-    }
-
-private:
-    SweepRect m_all;
-    int m_cols, m_rows;
-};
-
-/// What stands before the depths of a part of a tile in a message.
-struct PartHead {
-    int tile = 0;
-    int to = -1; ///< block whose reach is entered; −1: the whole way
-    SweepRect rect;
-};
-
-void append(std::vector<std::byte>& bytes, const RayDepths& depths, const PartHead& head) {
+void append(std::vector<std::byte>& bytes, const RayDepths& depths, const DepthPartHead& head) {
     const std::size_t needed =
         bytes.size() + sizeof head + head.rect.rays() * static_cast<std::size_t>(depths.lanes) * sizeof(float);
     if (needed > bytes.capacity()) bytes.reserve(needed + needed / 4); // memory may be short
@@ -60,7 +28,7 @@ bool isHanded(const RayDepths& depths, const SweepRect& part) {
 }
 
 struct Part {
-    PartHead head;
+    DepthPartHead head;
     int from = 0;
     RayDepths depths;
 };
@@ -70,7 +38,7 @@ void readParts(const RankMessage& message, int lanes, std::vector<Part>& parts) 
     for (ByteReader reader(message.bytes); !reader.atEnd();) {
         Part& part = parts.emplace_back();
         part.from = message.rank;
-        part.head = reader.take<PartHead>();
+        part.head = reader.take<DepthPartHead>();
         part.depths = RayDepths(part.head.rect, lanes, 0);
         reader.take(std::span(part.depths.values));
     }
@@ -88,24 +56,35 @@ void forCommonRays(Into& into, From& from, const Body& body) {
 
 } // namespace
 
+SweepRect DepthTiles::at(int tile) const {
+    const int row = m_all.firstRow + tile / m_cols * kTile, col = m_all.firstCol + tile % m_cols * kTile;
+    return common({row, row + kTile, col, col + kTile}, m_all);
+}
+
+int DepthTiles::perRound(int lanes) const {
+    constexpr std::size_t kBytesAtOnce = 1u << 20; // of depths of the tiles that are under way, per rank
+    const std::size_t ranks = static_cast<std::size_t>(m_ranks),
+                      bytes = std::size_t{kTile} * kTile * static_cast<std::size_t>(lanes) * sizeof(float);
+    return static_cast<int>(std::max(ranks, kBytesAtOnce * ranks / bytes));
+}
+
 RayDepths depthsBefore(Communicator& ranks, const std::vector<int>& order, const SweepRect& all,
                        const SweepRect& wanted, CarriedDepths carried, int lanes) {
     RayDepths before(wanted, lanes, kNotHanded);
     if (all.rays() == 0) return before;
-    const Tiles tiles(all);
+    const DepthTiles tiles(all, ranks.size());
     const auto count = static_cast<std::size_t>(ranks.size());
     const auto lanesOf = static_cast<std::size_t>(lanes);
     std::vector<std::size_t> placeOf(count); // in the order
     for (std::size_t i = 0; i < count; ++i) placeOf[static_cast<std::size_t>(order[i])] = i;
-    const int atOnce = static_cast<int>(
-        std::max<std::size_t>(count, kBytesAtOnce * count / (std::size_t{kTile} * kTile * lanesOf * sizeof(float))));
+    const int atOnce = tiles.perRound(lanes);
 
     for (int first = 0; first < tiles.count(); first += atOnce) {
         const int end = std::min(tiles.count(), first + atOnce);
         std::vector<RankMessage> out(count);
         for (std::size_t r = 0; r < count; ++r) out[r].rank = static_cast<int>(r);
         for (int tile = first; tile < end; ++tile) {
-            auto& bytes = out[static_cast<std::size_t>(tile) % count].bytes;
+            auto& bytes = out[static_cast<std::size_t>(tiles.rankOf(tile))].bytes;
             const SweepRect rect = tiles.at(tile);
             if (const SweepRect part = common(rect, carried.through.rect); part.rays() > 0)
                 append(bytes, carried.through, {tile, -1, part});

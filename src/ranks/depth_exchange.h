@@ -3,13 +3,11 @@
 
 #include <vector>
 
+#include "ranks/block_rays.h"
 #include "ranks/communicator.h"
 #include "render/cpu/sweep.h"
 
 namespace pellucid {
-
-/// The rays that both have.
-SweepRect common(const SweepRect& a, const SweepRect& b);
 
 /// Optical depths of rays, [row][col][lanes], in units of the sweep's tables.
 struct RayDepths {
@@ -33,6 +31,30 @@ inline constexpr float kNotHanded = -1;
 struct CarriedDepths {
     RayDepths through; ///< of the whole way through the block
     std::vector<HandedDepths> handed;
+};
+
+/// Tiles of a rectangle of rays, in rows, each with a rank that adds up what is told of it.
+class DepthTiles {
+public:
+    static constexpr int kTile = 64; ///< rays along each side
+    DepthTiles(const SweepRect& all, int ranks)
+        : m_all(all), m_cols((all.endCol - all.firstCol + kTile - 1) / kTile),
+          m_rows((all.endRow - all.firstRow + kTile - 1) / kTile), m_ranks(ranks) {}
+    int count() const { return m_cols * m_rows; }
+    SweepRect at(int tile) const;
+    int rankOf(int tile) const { return tile % m_ranks; }
+    int perRound(int lanes) const; ///< tiles that are under way at a time
+
+private:
+    SweepRect m_all;
+    int m_cols, m_rows, m_ranks;
+};
+
+/// What stands before the depths of a part of a tile in a message.
+struct DepthPartHead {
+    int tile = 0;
+    int to = -1; ///< block whose reach is entered; −1: the whole way
+    SweepRect rect;
 };
 
 /// What rays have met before they enter the reach of this rank's block: the sum over the blocks before it. Rays are cut

@@ -1,9 +1,9 @@
 #include "ranks/rank_engine.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
+#include "ranks/block_rays.h"
 #include "ranks/depth_exchange.h"
 #include "ranks/rank_volume.h"
 #include "render/cpu/cpu_engine.h"
@@ -13,54 +13,6 @@
 namespace pellucid {
 
 namespace {
-
-constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-
-/// A region in the coordinates of a pass.
-SweepBox boxOf(const VoxelRegion& region, const SweepPass& pass, const Int3& dims) {
-    const Int3 lo = pass.permuted(region.lo), hi = pass.permuted(region.hi);
-    SweepBox box{{lo.x, lo.y, lo.z}, {hi.x, hi.y, hi.z}};
-    if (!pass.flipped) return box;
-    const int nw = dims[pass.w];
-    box.lo[2] = nw - hi.z;
-    box.hi[2] = nw - lo.z;
-    return box;
-}
-
-/// Stretches of rays that belong to a block: each belongs to one. The outermost blocks have what lies beyond.
-SweepReach ownReach(const SweepBox& box, const Int3& whole) {
-    SweepReach reach;
-    for (int a = 0; a < 3; ++a) {
-        reach.lo[a] = box.lo[a] == 0 ? -kEverywhere : box.lo[a] - 0.5;
-        reach.hi[a] = box.hi[a] == whole[a] ? kEverywhere : box.hi[a] - 0.5;
-    }
-    return reach;
-}
-
-/// Where rays go on their last way to the voxels of a block: as far as those around its voxels lie off, up to the slice
-/// in front of the last one.
-SweepReach reachAround(const SweepBox& box) {
-    SweepReach reach;
-    for (int a = 0; a < 2; ++a) {
-        reach.lo[a] = box.lo[a] - kRayMargin;
-        reach.hi[a] = box.hi[a] - 1 + kRayMargin;
-    }
-    reach.lo[2] = box.lo[2] - 1;
-    reach.hi[2] = box.hi[2] - 1;
-    reach.fromInside = true;
-    return reach;
-}
-
-/// What both have; nothing where they do not meet.
-std::optional<SweepReach> common(const SweepReach& a, const SweepReach& b) {
-    SweepReach both;
-    for (int axis = 0; axis < 3; ++axis) {
-        both.lo[axis] = std::max(a.lo[axis], b.lo[axis]);
-        both.hi[axis] = std::min(a.hi[axis], b.hi[axis]);
-        if (!(both.lo[axis] < both.hi[axis])) return {};
-    }
-    return both;
-}
 
 class RankEngine final : public VisibilityEngine {
 public:
@@ -110,10 +62,7 @@ private:
         view.clipping.validate();
         const Camera camera = sweepCamera(view.camera, m_block.whole);
         const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, m_block.whole);
-        const std::vector<int> order =
-            camera.projection == Projection::Perspective
-                ? m_block.blocks.orderFrom(sweepEye(camera, m_block.whole))
-                : m_block.blocks.orderAlong(m_block.whole.indexFromWorld() * camera.forward());
+        const std::vector<int> order = sweepOrder(camera, m_block.whole, m_block.blocks);
         OpaqueMap opaque;
         if (m_volume) opaque = m_volume->opaqueMap(tables, planes);
         std::vector<double> sums(tables.sumCount(), 0.0);
@@ -139,37 +88,20 @@ private:
     /// measures the block's voxels of the layer.
     void sweepLayer(const SweepInput& pass, int lanes, const SweepPass& axes, const SweepLayer& layer,
                     const std::vector<int>& order, std::vector<double>& sums, const JobControl& job) {
-        const Int3 dims = m_block.whole.dims, whole = axes.permuted(dims);
-        const auto& blocks = m_block.blocks.blocks();
-        const auto rectOf = [&](const SweepBox& window) {
-            SweepInput in = pass;
-            in.window = window;
-            return raysAround(in, layer);
-        };
-        const SweepRect all = rectOf({{0, 0, 0}, {whole.x, whole.y, whole.z}});
-        const SweepBox own = boxOf(m_block.block(), axes, dims);
-        const SweepRect wanted = rectOf(own);
-
+        const BlockRays rays = blockRays(pass, layer, axes, m_block.whole.dims, m_block.blocks, m_block.own);
         CarriedDepths carried;
         if (!isEmpty(m_block.block())) {
             SweepInput in = pass;
             in.bounded = true;
             in.keptLanes = lanes;
-            in.reach = ownReach(own, whole);
-            in.endRect = raysThrough(in, layer, in.reach);
+            in.reach = rays.reach;
+            in.endRect = rays.through;
             carried.through = RayDepths(in.endRect, lanes, 0);
             std::vector<SweepHandover> handovers;
-            for (std::size_t b = 0; b < blocks.size(); ++b) {
-                if (static_cast<int>(b) == m_block.own || isEmpty(blocks[b])) continue;
-                const SweepBox box = boxOf(blocks[b], axes, dims);
-                const SweepReach around = reachAround(box);
-                const auto entered = common(around, in.reach);
-                if (!entered) continue;
-                const SweepRect rays = common(raysThrough(in, layer, *entered), rectOf(box));
-                if (rays.rays() == 0) continue;
-                RayDepths depths(rays, lanes, kNotHanded);
-                handovers.push_back({around, rays, depths.values.data()}); // stays where it is when depths move
-                carried.handed.push_back({static_cast<int>(b), std::move(depths)});
+            for (const BlockEntry& entry : rays.entries) {
+                RayDepths depths(entry.rays, lanes, kNotHanded);
+                handovers.push_back({entry.around, entry.rays, depths.values.data()}); // stays when depths move
+                carried.handed.push_back({entry.block, std::move(depths)});
             }
             in.handovers = handovers.data();
             in.handoverCount = static_cast<int>(handovers.size());
@@ -179,13 +111,13 @@ private:
                 m_runner.run(in, sweepPieces(in, layer), none, job.part(0, 2));
             }
         }
-        RayDepths before = depthsBefore(m_ranks, order, all, wanted, std::move(carried), lanes);
-        if (wanted.rays() == 0) return;
+        RayDepths before = depthsBefore(m_ranks, order, rays.all, rays.wanted, std::move(carried), lanes);
+        if (rays.wanted.rays() == 0) return;
         SweepInput in = pass;
-        in.window = own;
+        in.window = rays.box;
         in.bounded = true;
         in.keptLanes = lanes;
-        in.reach = reachAround(own);
+        in.reach = rays.around;
         begin(in, layer, before);
         in.startRect = before.rect;
         in.startDepths = before.values.data();

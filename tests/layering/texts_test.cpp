@@ -63,8 +63,8 @@ private:
         if (sees("/*")) return skipPast("*/");
         if (sees("R\"(")) return readRaw();
         const char c = m_source[m_at];
-        // 1'000'000 has no characters between its marks.
-        if (c == '\'' && m_at > 0 && std::isalnum(static_cast<unsigned char>(m_source[m_at - 1]))) return pass(c);
+        // 1'000'000 has no characters between its marks, U'"' has.
+        if (c == '\'' && m_at > 0 && std::isxdigit(static_cast<unsigned char>(m_source[m_at - 1]))) return pass(c);
         if (c == '\'' || c == '"') return readQuoted(c);
         pass(c);
     }

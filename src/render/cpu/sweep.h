@@ -194,6 +194,11 @@ SweepRect raysAround(const SweepInput& input, const SweepLayer& layer);
 /// The rays among raysAround() the whole volume that pass through `reach` within a layer.
 SweepRect raysThrough(const SweepInput& input, const SweepLayer& layer, const SweepReach& reach);
 
+/// Between which slices a ray of a layer is in `reach`, widened by a hair; nowhere where enter > leave.
+struct SweepStretch {
+    double enter, leave;
+};
+SweepStretch stretchIn(const SweepInput& input, const SweepLayer& layer, int a, int b, const SweepReach& reach);
 /// Whether a ray of a layer passes through `reach`, or as good as does.
 bool passes(const SweepInput& input, const SweepLayer& layer, int a, int b, const SweepReach& reach);
 

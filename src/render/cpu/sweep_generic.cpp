@@ -129,7 +129,8 @@ SweepRect raysThrough(const SweepInput& in, const SweepLayer& layer, const Sweep
     return rect;
 }
 
-bool passes(const SweepInput& in, const SweepLayer& layer, int a, int b, const SweepReach& reach) {
+SweepStretch stretchIn(const SweepInput& in, const SweepLayer& layer, int a, int b, const SweepReach& reach) {
+    constexpr SweepStretch kNowhere{1, 0};
     const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5;
     constexpr double kNearly = 0.01; // voxels
     double enter = std::max(front, reach.lo[2]), leave = reach.hi[2];
@@ -141,14 +142,19 @@ bool passes(const SweepInput& in, const SweepLayer& layer, int a, int b, const S
         };
         const double x0 = at(0), slope = at(1) - x0, low = reach.lo[axis] - kNearly, high = reach.hi[axis] + kNearly;
         if (slope == 0) {
-            if (x0 < low || x0 > high) return false;
+            if (x0 < low || x0 > high) return kNowhere;
             continue;
         }
         const double w0 = (low - x0) / slope, w1 = (high - x0) / slope;
         enter = std::max(enter, std::min(w0, w1));
         leave = std::min(leave, std::max(w0, w1));
     }
-    return enter <= leave;
+    return {enter, leave};
+}
+
+bool passes(const SweepInput& in, const SweepLayer& layer, int a, int b, const SweepReach& reach) {
+    const SweepStretch stretch = stretchIn(in, layer, a, b, reach);
+    return stretch.enter <= stretch.leave;
 }
 
 std::vector<SweepPiece> sweepPieces(const SweepInput& in, const SweepLayer& layer) {

@@ -1,0 +1,40 @@
+// Which rays of a sweep go through a block, and from which of its neighbours they come.
+#pragma once
+
+#include <vector>
+
+#include "ranks/decomposition.h"
+#include "render/cpu/sweep.h"
+#include "render/cpu/sweep_volume.h"
+
+namespace pellucid {
+
+/// The rays that both have.
+SweepRect common(const SweepRect& a, const SweepRect& b);
+
+/// Where rays on their way through a block enter the surroundings of another one.
+struct BlockEntry {
+    int block = 0;     ///< the other one
+    SweepReach around; ///< of its voxels, see kRayMargin
+    SweepRect rays;    ///< that may do so
+};
+
+/// The blocks from the eye on, for a camera of sweeps (sweepCamera()).
+std::vector<int> sweepOrder(const Camera& camera, const Geometry& whole, const Decomposition& blocks);
+
+/// A block and the rays of a layer of a sweep, in the coordinates of the pass.
+struct BlockRays {
+    SweepBox box; ///< the block
+    SweepReach
+        reach; ///< the stretches of rays that are the block's: each is one's, and the outermost have what is beyond
+    SweepReach around;
+    SweepRect all;                   ///< those of the whole volume
+    SweepRect wanted;                ///< around the voxels of the block
+    SweepRect through;               ///< those that pass through `reach`
+    std::vector<BlockEntry> entries; ///< none where the block is empty
+};
+/// `pass`: with the rays of the sweep set (setSweepRays()).
+BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const SweepPass& axes, const Int3& dims,
+                    const Decomposition& blocks, int own);
+
+} // namespace pellucid
