@@ -7,6 +7,7 @@
 #   dev       everything builds with assertions and with warnings as errors
 #   asan      no fault of addresses or undefined behaviour in the tests of files, fields, sessions and commands, nor in what
 #             damaged headers make of the readers
+#   asan-mpi  nor in blocks on ranks, nor in pellucid-mpi, its ranks killed and its files broken
 #   tsan      no race in the tests that use threads
 #   zink      the tests of OpenGL with another driver: Mesa's zink over its software Vulkan
 #   tidy      clang-tidy has nothing to say of files that differ from PELLUCID_BASE (the commit before this one)
@@ -14,7 +15,7 @@
 # failure, and both are named. Exit status 1 where a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all=(format mpi headless headers dev asan tsan zink tidy)
+all=(format mpi headless headers dev asan asan-mpi tsan zink tidy)
 
 # Installs the packages of the commands that are missing: need COMMAND PACKAGE …
 need() {
@@ -74,6 +75,14 @@ check_asan() {
     # Without the search for leaks: the drivers of OpenGL keep what they have until the program ends.
     ASAN_OPTIONS=detect_leaks=0 ctest --preset dev-asan --parallel 2 -L '^(session|cli|tools)$' || status=1
     return $status
+}
+
+check_asan-mpi() {
+    scripts/setup.sh --mpi
+    cmake --preset dev-asan -DPELLUCID_MPI=ON >/dev/null
+    cmake --build --preset dev-asan --target pellucid-cli pellucid-mpi test_ranks test_mpi
+    export UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS="suppressions=$PWD/scripts/lsan-mpi.supp:print_suppressions=0"
+    ctest --preset dev-asan -L '^(ranks|mpi)$'
 }
 
 check_tsan() {
