@@ -105,7 +105,7 @@ std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr
 
 bool cutBlocksByWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, const MemoryUse& then,
                      const JobControl& job) {
-    return volume.elsewhere() != nullptr && cutByWork(volume, tf, clipping, then, job);
+    return cutByWork(volume, tf, clipping, then, job);
 }
 
 } // namespace pellucid

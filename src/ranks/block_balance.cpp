@@ -6,8 +6,6 @@
 #include "base/memory.h"
 #include "ranks/rank_volume.h"
 #include "render/drawn_cells.h"
-#include "volume/fetched_values.h"
-#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -33,22 +31,11 @@ double largestShare(const Decomposition& blocks, const Grid<double>& work, const
 
 Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping,
                        const JobControl& job) {
-    const CellGrid grid(Int3(0), volume.dims());
-    Grid<double> work(grid.cells);
     const std::vector<VoxelPlane> planes = planesInVoxels(clipping, volume.geometry());
     const TfSampler sampler(tf);
-    const auto wanted = [&](const auto& ask) {
-        for (std::size_t i = 0; i < work.size(); ++i) ask(grid.voxelIn(voxelAt(grid.cells, i)));
-    };
-    withValues(volume, wanted, [&](const auto& values) {
-        forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
-            const Int3 v = grid.voxelIn(cell);
-            const double s = volume.intensityOfValue(values(voxelIndex(volume.dims(), v.x, v.y, v.z)));
-            const bool isDrawn = !std::isnan(s) && sampler.opacity(s) > 0 && keeps(planes, Vec3(v));
-            work[at] = isDrawn ? 1 : kEmptyWork;
-        });
+    return ofCells(volume, CellGrid(Int3(0), volume.dims()), job, [&](const Int3& voxel, double s) {
+        return !std::isnan(s) && sampler.opacity(s) > 0 && keeps(planes, Vec3(voxel)) ? 1 : kEmptyWork;
     });
-    return work;
 }
 
 bool cutByWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, const MemoryUse& then,

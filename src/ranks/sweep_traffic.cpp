@@ -18,14 +18,13 @@ std::uint64_t bytesOf(const SweepRect& rays, int lanes) {
 bool isEntered(const SweepInput& in, const SweepLayer& layer, const SweepRect& part, const SweepReach& around,
                const SweepReach& own, bool isBehind) {
     constexpr double kWithin = 0.05; // slices; more than stretches are widened by
-    const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5;
     for (int b = part.firstRow; b < part.endRow; ++b)
         for (int a = part.firstCol; a < part.endCol; ++a) {
             const SweepStretch there = stretchIn(in, layer, a, b, around);
             if (there.enter > there.leave) continue;
             if (isBehind) return true;
             const SweepStretch here = stretchIn(in, layer, a, b, own);
-            if (there.enter > std::max(front, here.enter) + kWithin && there.enter < here.leave - kWithin) return true;
+            if (there.enter > here.enter + kWithin && there.enter < here.leave - kWithin) return true;
         }
     return false;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "volume/fetched_values.h"
 #include "volume/noise.h"
 
 namespace pellucid {
@@ -49,21 +48,12 @@ TransferFunction withEvenPeaks(const TransferFunction& tf, const Geometry& geome
 
 Grid<std::uint8_t> drawnCells(const Volume& volume, const TransferFunction& tf, std::span<const VoxelPlane> planes,
                               const CellGrid& grid, const JobControl& job) {
-    Grid<std::uint8_t> drawn(grid.cells);
     const double least = leastOpacity(volume.geometry());
     // Ten times as deep: peaks of which `least` is a tenth.
     const TfSampler sampler(withEvenPeaks(tf, volume.geometry(), 1 - std::pow(1 - 0.05, 10), 0.5));
-    const auto wanted = [&](const auto& ask) {
-        for (std::size_t i = 0; i < drawn.size(); ++i) ask(grid.voxelIn(voxelAt(grid.cells, i)));
-    };
-    withValues(volume, wanted, [&](const auto& values) {
-        forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
-            const Int3 v = grid.voxelIn(cell);
-            const double s = volume.intensityOfValue(values(voxelIndex(volume.dims(), v.x, v.y, v.z)));
-            drawn[at] = !std::isnan(s) && sampler.opacity(s) >= least && keeps(planes, Vec3(v));
-        });
+    return ofCells(volume, grid, job, [&](const Int3& voxel, double s) -> std::uint8_t {
+        return !std::isnan(s) && sampler.opacity(s) >= least && keeps(planes, Vec3(voxel));
     });
-    return drawn;
 }
 
 } // namespace pellucid

@@ -7,7 +7,9 @@
 #include "base/job.h"
 #include "render/clipping.h"
 #include "tf/transfer_function.h"
+#include "volume/fetched_values.h"
 #include "volume/volume.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -25,6 +27,23 @@ struct CellGrid {
     /// A voxel of the cell, by a hash: regular places would follow regular data.
     Int3 voxelIn(const Int3& cell) const;
 };
+
+/// valueOf(voxel, intensity) for the voxel that stands for each cell; the intensity is NaN where it is invalid.
+/// Collective where the voxels are in several processes. Throws Cancelled.
+template <class ValueOf>
+auto ofCells(const Volume& volume, const CellGrid& grid, const JobControl& job, const ValueOf& valueOf) {
+    Grid<decltype(valueOf(Int3(), 0.0))> result(grid.cells);
+    const auto wanted = [&](const auto& ask) {
+        for (std::size_t i = 0; i < result.size(); ++i) ask(grid.voxelIn(voxelAt(grid.cells, i)));
+    };
+    withValues(volume, wanted, [&](const auto& values) {
+        forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
+            const Int3 v = grid.voxelIn(cell);
+            result[at] = valueOf(v, volume.intensityOfValue(values(voxelIndex(volume.dims(), v.x, v.y, v.z))));
+        });
+    });
+    return result;
+}
 
 /// `tf` with an equal peak for each feature that can be seen at all, a path of half the box through which is at least
 /// 5 % opaque; 0 for the others. The peak: a path of `part` of the box has this `alpha`. So what is found with it does

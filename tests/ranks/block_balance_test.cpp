@@ -3,7 +3,6 @@
 #include <glm/geometric.hpp>
 
 #include <array>
-#include <limits>
 
 #include "ranks/block_balance.h"
 #include "ranks/rank_engine.h"
