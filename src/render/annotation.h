@@ -82,6 +82,7 @@ struct Mark {
     Rgb haloColor = {};
     std::string text = {};        ///< UTF-8
     Vec2 across{1, 0}, up{0, -1}; ///< of a text: as far along the line and upward as a capital is high
+    bool operator==(const Mark&) const = default;
 };
 inline constexpr double kHaloAlpha = 0.6; ///< of the alpha of its mark
 

@@ -5,11 +5,13 @@
 #include <QCheckBox>
 #include <QFile>
 #include <QLabel>
+#include <QPainter>
 #include <QSignalSpy>
 #include <QTemporaryDir>
 
 #include "image_io/image_file.h"
 #include "render/annotation_raster.h"
+#include "widgets/mark_painter.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -156,4 +158,44 @@ TEST_CASE("views speak anatomy where the file does", "[frame]") {
     CHECK(differences(shown, without, 0.9, 0.45, 1, 0.55) > 10);
     CHECK(differences(shown, without, 0.45, 0, 0.55, 0.1) > 10);
     CHECK(differences(shown, without, 0.45, 0.9, 0.55, 1) > 10);
+}
+
+TEST_CASE("marks that are drawn again look as they did, and those that have changed as they are", "[marks]") {
+    const double ratio = GENERATE(1.0, 1.25, 2.0);
+    const auto text = [](const char* words, Vec2 at) {
+        return Mark{
+            AnnotationPart::Letters, Mark::Kind::Text, {at}, {1, 1, 1}, 1, 1.5, 2, {}, words, {10, 0}, {0, -10}};
+    };
+    std::vector<Mark> marks{text("A", {20.3, 30.6}),
+                            {AnnotationPart::Scale, Mark::Kind::Line, {{40, 50}, {90.5, 50}}, {1, 0, 0}, 0.7, 2, 1},
+                            {AnnotationPart::Cube, Mark::Kind::Area, {{5, 5}, {25, 8}, {12, 28}}, {0, 1, 0}, 0.5},
+                            text("moves", {30, 80})};
+    const auto drawn = [&](const auto& draw) {
+        QImage image(QSize(static_cast<int>(120 * ratio), static_cast<int>(100 * ratio)), QImage::Format_RGB32);
+        image.setDevicePixelRatio(ratio);
+        image.fill(QColor(40, 60, 90));
+        QPainter painter(&image);
+        painter.setRenderHint(QPainter::Antialiasing);
+        draw(painter);
+        return image;
+    };
+    MarkPainter again;
+    for (int frame = 0; frame < 5; ++frame) {
+        marks.back().points[0].x += 3;
+        if (frame == 3) marks[0].text = "P";
+        const QImage kept = drawn([&](QPainter&painter) { again.draw(painter, marks); }),
+                     anew = drawn([&](QPainter&painter) {
+                         for (const Mark& mark : marks) drawMark(painter, mark);
+                     });
+        // A level or two of rounding: a mark that is kept is laid over the picture as a whole.
+        int worst = 0;
+        for (int y = 0; y < anew.height(); ++y)
+            for (int x = 0; x < anew.width(); ++x) {
+                const QColor a = anew.pixelColor(x, y), b = kept.pixelColor(x, y);
+                worst = std::max({worst, std::abs(a.red() - b.red()), std::abs(a.green() - b.green()),
+                                  std::abs(a.blue() - b.blue())});
+            }
+        INFO("frame " << frame << " at " << ratio);
+        CHECK(worst <= 3);
+    }
 }

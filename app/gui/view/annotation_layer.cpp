@@ -9,7 +9,6 @@
 #include "render/slice.h"
 #include "store/view_edits.h"
 #include "view/slice_pane.h"
-#include "widgets/mark_painter.h"
 
 namespace pellucid::gui {
 
@@ -27,7 +26,7 @@ void AnnotationLayer::paint(QPainter& painter, const LayerView& view) {
     }
     input.axes = view.scene.session.coordinates->axes; // measures have a layer of their own
     if (!input.show.any()) return;
-    for (const Mark& mark : annotationMarks(input)) drawMark(painter, mark);
+    m_marks.draw(painter, annotationMarks(input));
 }
 
 void SliceLayer::paint(QPainter& painter, const LayerView& view) {

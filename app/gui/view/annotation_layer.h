@@ -2,6 +2,7 @@
 #pragma once
 
 #include "view/view_overlay.h"
+#include "widgets/mark_painter.h"
 
 namespace pellucid::gui {
 
@@ -16,6 +17,7 @@ public:
 
 private:
     const FieldController* m_fields;
+    MarkPainter m_marks;
 };
 
 /// The outlines of the slices and the crosshair, while slices are shown; takes no clicks.

@@ -28,10 +28,9 @@ std::uint32_t* pixelsOf(QImage& image) { return reinterpret_cast<std::uint32_t*>
 
 } // namespace
 
-struct CpuSurface::Shared {
-    std::mutex mutex;
+struct CpuSurface::Drawing {
     std::shared_ptr<const Volume> volume;
-    std::unique_ptr<TileRenderer> renderer;
+    std::unique_ptr<TileRenderer> renderer; ///< of it
 };
 
 /// A picture while it is drawn that grows: one thread adds parts, the window's takes them.
@@ -42,9 +41,9 @@ struct CpuSurface::Growing {
 };
 
 CpuSurface::CpuSurface(QWidget* parent)
-    : QWidget(parent), m_renderer(std::make_shared<Shared>()),
-      m_job([shared = m_renderer](const Task& task, const JobControl& job) { return drawn(*shared, task, job); },
-            [this](const Task& task, Picture& picture) { show(task, picture); }) {
+    : QWidget(parent), m_drawing(std::make_unique<Drawing>()),
+      m_job([drawing = m_drawing.get()](const Task& task, const JobControl& job) { return drawn(*drawing, task, job); },
+            [this](const Task& task, Picture& picture) { show(task, picture); }, WhenBusy::StopOld, &m_lane) {
     setObjectName("cpuSurface");
     setAttribute(Qt::WA_OpaquePaintEvent);
     m_grow.setInterval(kGrowEvery);
@@ -58,18 +57,16 @@ CpuSurface::CpuSurface(QWidget* parent)
 
 CpuSurface::~CpuSurface() = default;
 
-CpuSurface::Picture CpuSurface::drawn(Shared& shared, const Task& task, const JobControl& job) {
-    const std::lock_guard lock(shared.mutex);
-    job.throwIfStopped();
-    if (shared.volume != task.input.volume) {
-        shared.renderer = makeCpuRenderer(task.input.volume);
-        shared.volume = task.input.volume;
+CpuSurface::Picture CpuSurface::drawn(Drawing& drawing, const Task& task, const JobControl& job) {
+    if (drawing.volume != task.input.volume) {
+        drawing.renderer = makeCpuRenderer(task.input.volume);
+        drawing.volume = task.input.volume;
     }
-    if (!task.growing) return quick(*shared.renderer, task, job);
+    if (!task.growing) return quick(*drawing.renderer, task, job);
     const PictureInput& in = task.input;
     const RenderSettings settings = task.plan.applied(in.settings, task.pixels);
     Image image(settings.width, settings.height);
-    shared.renderer->refine(
+    drawing.renderer->refine(
         in.camera, in.tf, settings, image, task.focus.x(), task.focus.y(),
         [&](const ImagePart& part) {
             const std::lock_guard growing(task.growing->mutex);

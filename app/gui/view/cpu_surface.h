@@ -34,7 +34,7 @@ protected:
     void resizeEvent(QResizeEvent* event) override;
 
 private:
-    struct Shared; // with threads that have been cancelled but have not noticed yet
+    struct Drawing; ///< what m_lane has to itself
     struct Growing;
     enum class Stage { Quick, Full, Finished };
     /// Samples that a quick picture can afford, of those of a full one; follows the time that pictures take.
@@ -57,7 +57,7 @@ private:
         bool inSlices = false; ///< a quick picture, drawn in storage order
         double seconds = 0;
     };
-    static Picture drawn(Shared& shared, const Task& task, const JobControl& job);
+    static Picture drawn(Drawing& drawing, const Task& task, const JobControl& job);
     static Picture quick(TileRenderer& renderer, const Task& task, const JobControl& job);
     static PicturePlan planFor(const Affordable& affordable, bool inSlices);
     void restart();
@@ -66,7 +66,7 @@ private:
     void takeGrown();
 
     PictureInput m_scene;
-    std::shared_ptr<Shared> m_renderer;
+    std::unique_ptr<Drawing> m_drawing;
     std::shared_ptr<Growing> m_growing; ///< the picture under way that grows, null: none
     QImage m_picture;                   ///< shown over m_target, device pixels
     QSizeF m_target;
@@ -76,7 +76,8 @@ private:
     Stage m_next = Stage::Full;                      ///< when the scene rests
     RestTimer m_idle{120, [this] { draw(m_next); }}; ///< milliseconds without a change before the full picture is begun
     QTimer m_grow;
-    Job<Task, Picture> m_job; // last: its threads end before the rest goes
+    Lane m_lane;              // one thread for all pictures: they wait for the renderer anyway
+    Job<Task, Picture> m_job; // last: its work ends before the rest goes
 };
 
 } // namespace pellucid::gui

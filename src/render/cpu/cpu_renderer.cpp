@@ -22,7 +22,8 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kTile = kTileRows; ///< pixels
+constexpr int kTile = kTileRows;                  ///< pixels
+constexpr float kFaintestHighlight = 1.0f / 4096; ///< less adds nothing to a pixel of eight bits
 
 void copy(const Vec3& from, float (&to)[3]) {
     for (int a = 0; a < 3; ++a) to[a] = static_cast<float>(from[a]);
@@ -262,6 +263,8 @@ private:
             m_specular[static_cast<std::size_t>(i)] =
                 static_cast<float>(from.specular * std::pow(static_cast<double>(i) / kSpecularEntries, from.shininess));
         l.specular = m_specular.data();
+        const auto seen = std::upper_bound(m_specular.begin(), m_specular.end(), kFaintestHighlight);
+        l.specularFrom = static_cast<float>(seen - m_specular.begin() - 1) / kSpecularEntries;
         const Geometry& g = whole();
         l.gradientOpacity = static_cast<float>(from.gradientOpacity);
         l.silhouettes = static_cast<float>(from.silhouettes);

@@ -45,6 +45,7 @@ struct PacketLight {
     float ambient = 1, diffuse = 0;
     float toward[3] = {0, 0, 1};      ///< unit vector
     const float* specular = nullptr;  ///< kSpecularEntries + 1: highlight by the cosine to the reflected light
+    float specularFrom = 0;           ///< the cosine from which on there is one to speak of
     float cameraFromGradient[3][3]{}; ///< rows; from codes per voxel to intensity per d0
     float gradientOpacity = 0, silhouettes = 0, occlusion = 0, depthCue = 0; ///< strengths, [0,1]
     float cueFrom = 0, cuePerDepth = 0;                                      ///< cue = (t − from)·perDepth

@@ -67,12 +67,8 @@ public:
             // R·V with R = 2(N·L)N − L
             Vec8 mirrored = 2.0f * toward * positive(facing) - lightToView;
             mirrored = toward > 0 ? least(all(1), most(Vec8{}, mirrored)) : Vec8{};
-            const Vec8 entry = mirrored * static_cast<float>(kSpecularEntries);
-            const Int8 e = least(toInt(entry), Int8{} + (kSpecularEntries - 1));
-            const Vec8 f = entry - toFloat(e);
-            const Vec8 below = floatsAt(l.specular, e), above = floatsAt(l.specular + 1, e);
             shade.scale = surface ? l.ambient + l.diffuse * most(Vec8{}, toward) : all(1);
-            shade.add = surface & (toward > 0) ? below + f * (above - below) : Vec8{};
+            if (!none(mirrored > l.specularFrom)) shade.add = surface & (toward > 0) ? specularAt(mirrored) : Vec8{};
         }
         if (l.silhouettes > 0) {
             Vec8 edge = 1.0f - least(all(1), positive(facing));
@@ -99,6 +95,12 @@ public:
 private:
     static Vec8 floatsAt(const float* from, Int8 x) {
         return reinterpret_cast<Vec8>(gathered(reinterpret_cast<const int*>(from), x));
+    }
+    Vec8 specularAt(Vec8 cosine) const {
+        const Vec8 entry = cosine * static_cast<float>(kSpecularEntries);
+        const Int8 e = least(toInt(entry), Int8{} + (kSpecularEntries - 1));
+        const Vec8 below = floatsAt(m_s.light.specular, e), above = floatsAt(m_s.light.specular + 1, e);
+        return below + (entry - toFloat(e)) * (above - below);
     }
 
     /// Central differences of the trilinear intensity over one voxel on each side, where all that takes is inside:

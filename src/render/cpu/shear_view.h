@@ -58,7 +58,7 @@ struct ShearView {
 /// Rays per pixel of a picture that a ShearView has, about, along each axis; and how close they get at most.
 struct ShearDensity {
     double raysPerPixel = 0.75;
-    double closest = 1.15;  ///< voxels
+    double closest = 1.18;  ///< voxels
     double farthest = 1.85; ///< voxels, along u in every slice: that many neighbours are read together; `closest` wins
 };
 

@@ -114,6 +114,14 @@ std::vector<int> extentsOf(const std::vector<std::uint8_t>& touched, int height)
     return all;
 }
 
+void fillGradient(const PacketLight& light, ShearedScene& s) {
+    for (int row = 0; row < 3; ++row)
+        for (int a = 0; a < 3; ++a) {
+            const float by = light.cameraFromGradient[row][s.axis[a]];
+            s.cameraFromGradient[row][a] = a == 2 && s.reversed ? -by : by;
+        }
+}
+
 /// How ways through (u, v, w) lie in the world and before the camera.
 void fillWorld(const ShearView& view, const Camera& camera, const Geometry& geometry, ShearedScene& s) {
     const Mat3 worldFromIndex = geometry.worldFromIndex();
@@ -153,6 +161,7 @@ void ShearedPicture::draw(const PacketScene& scene, const Camera& camera, const 
     s.pixels = pixels;
     fillView(view, s);
     fillPlanes(scene, s);
+    fillGradient(scene.light, s);
     fillWorld(view, camera, m_geometry, s);
     const Int3 n = m_grid.codes.dims();
     std::int64_t steps[3] = {1, n.x, static_cast<std::int64_t>(n.x) * n.y};

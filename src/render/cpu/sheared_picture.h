@@ -38,7 +38,7 @@ private:
     /// such a picture is drawn, and where codes are narrow: volumes so large that their memory counts.
     ZeroedVector<std::uint16_t> m_turned;
     ZeroedVector<std::uint8_t> m_turnedValid;
-    std::vector<float> m_rays;
+    std::vector<std::int16_t> m_rays;
     std::vector<std::uint8_t> m_touched;
 };
 

@@ -28,8 +28,8 @@ struct ShearedScene {
     float shift[2][2]{}; ///< of u and of v, likewise
     float first[2]{}, pitch[2]{};
     int width = 0, height = 0; ///< rays
-    /// width × height × 4, rows `stride` floats apart: colour times alpha, and alpha.
-    float* rgba = nullptr;
+    /// width × height × 4, rows `stride` numbers apart: colour times alpha, and alpha, in parts of 2¹⁴.
+    std::int16_t* rgba = nullptr;
     std::int64_t stride = 0;
 
     std::uint8_t* touched = nullptr; ///< [height][stride/32]: whether any of eight rays has met anything
@@ -41,7 +41,8 @@ struct ShearedScene {
     int planeCount = 0;
     /// By u, v and w: along the picture to the right, downward and ahead, world units per voxel.
     float right[3]{}, down[3]{}, ahead[3]{};
-    float depthAtZero = 0; ///< along the view, of (0, 0, 0)
+    float cameraFromGradient[3][3]{}; ///< that of PacketLight by u, v and w
+    float depthAtZero = 0;            ///< along the view, of (0, 0, 0)
     float d0 = 1;
 
     // The warp: where the ray of a pixel passes the plane `base`, see ShearView::ofPixel; in rays of the grid.

@@ -19,8 +19,8 @@ constexpr int kEnded = 1 << 30; ///< in the place of a slice
 constexpr int kMostPackets = kShearedTileWidth / kWide;
 /// Slices before memory is needed that it is asked for.
 constexpr int kAskedAhead = 9;
-/// What a ray has gathered up to this opacity is lit as one.
-constexpr float kShearedLitAtOnce = 1.0f / 128;
+/// What rays have gathered is lit as one until one of eight has this opacity.
+constexpr float kShearedLitAtOnce = 1.0f / 64;
 
 /// Emission and absorption along eight neighbours, from slice to slice. Between two the intensity goes linearly, and
 /// what it meets there comes from running integrals over the transfer function.
@@ -242,7 +242,7 @@ private:
         for (int c = 0; c < 3; ++c) colors()[c] += per * met[c];
         if constexpr (kLight) {
             m_pending += weight;
-            light(m_pending > kShearedLitAtOnce);
+            if (!none(m_pending > kShearedLitAtOnce)) light(m_pending > 0);
         }
         return true;
     }
@@ -258,22 +258,26 @@ private:
         const float w = static_cast<float>(m_place);
         Vec8 gradient[3]; // along u, v, w
         m_slices.gradient(uAt(w), vAt(w), m_place, bitsOf(which), gradient);
-        Vec8 inVoxels[3];
-        for (int a = 0; a < 3; ++a) inVoxels[m_s.axis[a]] = a == 2 && m_s.reversed ? -gradient[a] : gradient[a];
-        m_lighting.toCamera(inVoxels, inCamera);
+        for (int row = 0; row < 3; ++row) {
+            const float(&by)[3] = m_s.cameraFromGradient[row];
+            inCamera[row] = by[0] * gradient[0] + by[1] * gradient[1] + by[2] * gradient[2];
+        }
     }
 
-    /// Lights what is pending of the rays in `which` by the gradient at m_place.
-    void light(Int8 which) {
+    /// Lights what is pending of the rays in `which` by the gradient at m_place. Not inlined: there are too few
+    /// registers for it and step() at a time.
+    __attribute__((noinline)) void light(Int8 which) {
         const unsigned bits = bitsOf(which);
         if (bits == 0) return;
-        Vec8 inCamera[3], position[3];
+        Vec8 inCamera[3], position[3]{}, depth{};
         gradientInCamera(which, inCamera);
-        const float w = static_cast<float>(m_place);
-        const Vec8 uvw[3] = {uAt(w), all(vAt(w)), all(w)};
-        for (int a = 0; a < 3; ++a)
-            position[m_s.axis[a]] = a == 2 && m_s.reversed ? all(static_cast<float>(m_s.dims[2] - 1)) - w : uvw[a];
-        const Vec8 depth = m_s.depthAtZero + uvw[0] * m_s.ahead[0] + uvw[1] * m_s.ahead[1] + uvw[2] * m_s.ahead[2];
+        if (m_scene.light.openness || m_scene.light.depthCue > 0) {
+            const float w = static_cast<float>(m_place);
+            const Vec8 uvw[3] = {uAt(w), all(vAt(w)), all(w)};
+            for (int a = 0; a < 3; ++a)
+                position[m_s.axis[a]] = a == 2 && m_s.reversed ? all(static_cast<float>(m_s.dims[2] - 1)) - w : uvw[a];
+            depth = m_s.depthAtZero + uvw[0] * m_s.ahead[0] + uvw[1] * m_s.ahead[1] + uvw[2] * m_s.ahead[2];
+        }
         const Shade shade = m_lighting.shadeOf(m_view, inCamera, position, depth, bits);
         for (int c = 0; c < 3; ++c) {
             Vec8 lit = least(m_unlit[c] * shade.scale + shade.add * m_pending, m_pending) * shade.dim;
@@ -285,13 +289,12 @@ private:
     }
 
     void store() const {
-        float* at = m_s.rgba + m_y * m_s.stride + 4 * static_cast<std::int64_t>(m_x);
-        const Vec8 alpha = 1.0f - m_clear;
-        m_s.touched[(m_y * m_s.stride + 4 * static_cast<std::int64_t>(m_x)) / (4 * kWide)] = !none(alpha > 0);
-        for (int n = 0; n < kWide; ++n) {
-            const Vec4 pixel{m_rgb[0][n], m_rgb[1][n], m_rgb[2][n], alpha[n]};
-            __builtin_memcpy(at + 4 * n, &pixel, sizeof pixel);
-        }
+        const std::int64_t at = m_y * m_s.stride + 4 * static_cast<std::int64_t>(m_x);
+        const Vec8 color[4] = {m_rgb[0], m_rgb[1], m_rgb[2], 1.0f - m_clear};
+        m_s.touched[at / (4 * kWide)] = !none(color[3] > 0);
+        Int8 whole[4];
+        for (int c = 0; c < 4; ++c) whole[c] = toInt(color[c] * static_cast<float>(kColorOne) + 0.5f);
+        storeFours(m_s.rgba + at, whole);
     }
 
     const ShearedScene& m_s;

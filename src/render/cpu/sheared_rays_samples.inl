@@ -115,28 +115,32 @@ public:
     /// Central differences of the interpolated codes over one voxel on each side of places in a slice, along u, v, w.
     void gradient(Vec8 u, float v, int slice, unsigned bits, Vec8 (&g)[3]) const {
         const Lanes l = lanesAt(u, v, slice);
-        if (m_valid || !isRow(l.index[kWide - 1] + 2)) return scatteredGradient(l, bits, g);
-        const int start = larger(0, l.base - 1), before = l.base - start;
-        const auto at = [&](int off) { // voxels off, held within the row
-            const Int8 x = l.index + (before + off), last = Int8{} + (m_s.dims[0] - 1 - start);
-            return most(Int8{}, least(x, last));
+        const int start = l.base - 1, farthest = l.index[kWide - 1] + 3;
+        if (m_valid || start < 0 || start + farthest >= m_s.dims[0] || farthest >= 2 * kWide || m_s.along[0] != 1)
+            return scatteredGradient(l, bits, g);
+        const Code* const here = m_codes + rowAt(l.row, l.slice) + start;
+        const auto row = [&](int n) { return m_codes + rowAt(l.row + n, l.slice) + start; };
+        const Code *const above = row(-1), *const below = row(1), *const farBelow = row(2);
+        const std::int64_t toLast = (larger(0, l.slice - 1) - l.slice) * m_s.along[2],
+                           toNext = (smaller(m_s.dims[2] - 1, l.slice + 1) - l.slice) * m_s.along[2];
+        // Differences of codes before the rays' own places between them: sixteen neighbours in two halves.
+        Window on, alongV, alongW;
+        const auto half = [&](int from, Vec8& onRow, Vec8& inV, Vec8& inW) {
+            const Int8 first = asInts(here + from), second = asInts(below + from);
+            const auto blend = [&](Int8 a, Int8 b) { return toFloat(a) + l.fractionV * toFloat(b - a); };
+            onRow = blend(first, second);
+            inV = blend(second - asInts(above + from), asInts(farBelow + from) - first);
+            inW = blend(asInts(here + toNext + from) - asInts(here + toLast + from),
+                        asInts(below + toNext + from) - asInts(below + toLast + from));
         };
-        const std::int64_t r[4] = {rowAt(l.row - 1, l.slice), rowAt(l.row, l.slice), rowAt(l.row + 1, l.slice),
-                                   rowAt(l.row + 2, l.slice)};
-        const auto window = [&](std::int64_t row) { return windowAt(m_codes + row + start); };
-        const Window w0 = window(r[0]), w1 = window(r[1]), w2 = window(r[2]), w3 = window(r[3]);
-        const float f = l.fractionV;
-        const Window onV{w1.low + f * (w2.low - w1.low), w1.high + f * (w2.high - w1.high)},
-            alongV{(1 - f) * (w2.low - w0.low) + f * (w3.low - w1.low),
-                   (1 - f) * (w2.high - w0.high) + f * (w3.high - w1.high)};
-        const Int8 here = at(0), next = at(1);
-        const Vec8 back = onV.at(next, false) - onV.at(at(-1), false),
-                   forth = onV.at(at(2), false) - onV.at(here, false);
-        g[0] = 0.5f * (back + l.fraction * (forth - back));
-        const Vec8 v0 = alongV.at(here, false), v1 = alongV.at(next, false);
-        g[1] = 0.5f * (v0 + l.fraction * (v1 - v0));
-        g[2] = 0.5f * (blended(m_codes, l, clampTo(l.slice + 1, 0, m_s.dims[2] - 1)) -
-                       blended(m_codes, l, clampTo(l.slice - 1, 0, m_s.dims[2] - 1)));
+        half(0, on.low, alongV.low, alongW.low);
+        half(kWide, on.high, alongV.high, alongW.high);
+        const Int8 at = l.index + 1;
+        const auto between = [&](Vec8 a, Vec8 b) { return 0.5f * (a + l.fraction * (b - a)); };
+        const Vec8 left = on.at(at, false), right = on.at(at + 1, false);
+        g[0] = between(right - on.at(at - 1, false), on.at(at + 2, false) - left);
+        g[1] = between(alongV.at(at, false), alongV.at(at + 1, false));
+        g[2] = between(alongW.at(at, false), alongW.at(at + 1, false));
     }
 
 private:

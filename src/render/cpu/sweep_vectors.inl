@@ -47,6 +47,8 @@ inline Int8 toInt(Vec8 v) { return __builtin_convertvector(v, Int8); } ///< towa
 inline Vec8 asFloats(const std::uint16_t* p) { return toFloat(load(p)); }
 inline Vec8 asFloats(const std::uint8_t* p) { return toFloat(__builtin_convertvector(load(p), Int8)); }
 inline Vec8 asFloats(const float* p) { return load(p); }
+inline Int8 asInts(const std::uint16_t* p) { return __builtin_convertvector(load(p), Int8); }
+inline Int8 asInts(const std::uint8_t* p) { return __builtin_convertvector(load(p), Int8); }
 inline UShort8 asCodes(const std::uint16_t* p) { return load(p); }
 inline UShort8 asCodes(const std::uint8_t* p) { return __builtin_convertvector(load(p), UShort8); }
 
