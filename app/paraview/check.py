@@ -56,6 +56,8 @@ def in_paraview(task):
     optimize = simple.Pellucidoptimizetransferfunction(Input=source, TransferFunction=task["tf"], Targets=task["targets"],
                                        Direction=task["view"])
     optimize.InputArray = ["POINTS", array]
+    if pellucid_apply.filter_for(source) != optimize:
+        raise RuntimeError("the macro does not find the filter that is there")
     if task.get("picture"):
         view = simple.CreateView("RenderView")
         view.ViewSize = [512, 512]

@@ -3,6 +3,7 @@
 
 #include <QAction>
 #include <QCheckBox>
+#include <QDoubleSpinBox>
 #include <QFile>
 #include <QLabel>
 #include <QPainter>
@@ -133,6 +134,7 @@ TEST_CASE("views speak anatomy where the file does", "[frame]") {
     OpenWindow w(24, ViewRenderer::Cpu);
     CHECK(w.child<QAction>("view1").text() == "Front");
     CHECK(w.child<QAction>("view5").text() == "Top");
+    CHECK(w.child<QLabel>("clipAxisY").text() == "y");
     const QTemporaryDir folder;
     QSignalSpy opened(&w.opening(), &OpenController::opened);
     w.opening().openPath(writePatient(folder));
@@ -144,6 +146,8 @@ TEST_CASE("views speak anatomy where the file does", "[frame]") {
     CHECK(w.child<QAction>("view6").toolTip().contains("radiologists"));
     CHECK(w.services().actions().keyTable().contains("Anterior"));
     CHECK(w.child<QLabel>("volumeLabel").toolTip().contains("L→R, P→A, I→S"));
+    CHECK(w.child<QLabel>("clipAxisY").text() == "y  P→A");
+    CHECK(w.child<QDoubleSpinBox>("clipYHi").toolTip().endsWith("0 % is at P, 100 % at A"));
     // World is LPS: left is +x. From the left the eye is there; from the feet the front, -y, is up.
     w.child<QAction>("view3").trigger();
     CHECK(w.document().camera().forward().x == Approx(-1));

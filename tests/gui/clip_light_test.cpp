@@ -17,6 +17,7 @@
 #include "render/image_renderer.h"
 #include "render/light_presets.h"
 #include "view/clip_layer.h"
+#include "widgets/input_habits.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -173,6 +174,23 @@ TEST_CASE("light is on where a volume opens, and one key switches it", "[light]"
     QTest::keyClick(&w.view(), Qt::Key_L);
     CHECK(lightOf(w).on);
     CHECK(w.picture() == lit);
+
+    // From a number, too, once it is typed.
+    InputHabits habits;
+    qApp->installEventFilter(&habits);
+    w.services().panels().show("clip");
+    auto& box = w.child<QDoubleSpinBox>("clipXLo");
+    box.setFocus();
+    REQUIRE(waitFor([&] { return box.hasFocus(); }));
+    box.selectAll();
+    QTest::keyClick(&box, Qt::Key_5);
+    QTest::keyClick(&box, Qt::Key_L);
+    CHECK(lightOf(w).on);
+    QTest::keyClick(&box, Qt::Key_Return);
+    QCoreApplication::processEvents();
+    QTest::keyClick(&box, Qt::Key_L);
+    CHECK_FALSE(lightOf(w).on);
+    CHECK(box.value() == 5);
 }
 
 TEST_CASE("the light is turned by hand", "[light]") {

@@ -53,6 +53,16 @@ TEST_CASE("the film dialog shows what its kind has, and how long the film will b
     dialog.findChild<QDoubleSpinBox*>("filmSeconds")->setValue(2);
     CHECK(summary.text() == "50 pictures, 2.0 s");
     CHECK(dialog.options().settings == FilmSettings{FilmKind::Views, 2, 25, 360});
+
+    // The list says what the boxes say.
+    const auto& preset = *dialog.findChild<QComboBox*>("filmPreset");
+    auto &width = *dialog.findChild<QSpinBox*>("filmWidth"), &height = *dialog.findChild<QSpinBox*>("filmHeight");
+    CHECK(preset.currentText() == "HD (1280 × 720)");
+    width.setValue(320);
+    CHECK(preset.currentText() == "Custom");
+    width.setValue(640);
+    height.setValue(480);
+    CHECK(preset.currentText() == "As seen (640 × 480)");
 }
 
 TEST_CASE("a film of the window is saved in the background, and can be cancelled", "[film]") {

@@ -116,12 +116,21 @@ void FilmDialog::makeSizes(const QSize& seen) {
         {tr("HD"), {1280, 720}}, {tr("Full HD"), {1920, 1080}}, {tr("As seen"), seen}, {tr("Square"), {720, 720}}};
     for (const auto& [text, size] : presets)
         m_preset->addItem(QStringLiteral("%1 (%2 × %3)").arg(text).arg(size.width()).arg(size.height()), size);
+    const int custom = m_preset->count();
+    m_preset->addItem(tr("Custom"));
     const auto apply = [this] {
         const QSize size = m_preset->currentData().toSize();
+        if (size.isEmpty()) return; // what is there may be changed
+        const QSignalBlocker quiet[] = {QSignalBlocker(m_width), QSignalBlocker(m_height)};
         m_width->setValue(size.width());
         m_height->setValue(size.height());
     };
     connect(m_preset, &QComboBox::activated, this, apply);
+    for (QSpinBox* box : {m_width, m_height})
+        connect(box, &QSpinBox::valueChanged, this, [this, custom] {
+            const int preset = m_preset->findData(QSize(m_width->value(), m_height->value()));
+            m_preset->setCurrentIndex(preset < 0 ? custom : preset);
+        });
     apply();
 }
 

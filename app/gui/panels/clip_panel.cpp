@@ -2,6 +2,7 @@
 #include <array>
 
 #include <QGridLayout>
+#include <QLabel>
 #include <QPushButton>
 
 #include <glm/geometric.hpp>
@@ -10,6 +11,7 @@
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
 #include "render/clip_handles.h"
+#include "volume/orientation.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
 #include "widgets/number_box.h"
@@ -48,11 +50,13 @@ private:
     QLayout* makeBox();
     PlaneRow makeRow(std::size_t index);
     void follow();
+    void nameAxis(std::size_t axis, const Geometry& geometry);
     void editBox(int axis, bool upper, double percent);
     void editPlane(std::size_t index, int number, double value);
     void changePlanes(const QString& text, const std::function<void(std::vector<ClipPlane>&)>& change);
 
     Services& m_services;
+    std::array<QLabel*, 3> m_axis{};
     std::array<std::array<QDoubleSpinBox*, 2>, 3> m_box{}; ///< [axis][lower, upper], per cent of the box
     std::array<PlaneRow, kMostClipPlanes> m_planes{};
     QPushButton* m_add =
@@ -88,20 +92,20 @@ QLayout* ClipPanel::makeBox() {
     grid->setColumnStretch(1, 1);
     grid->setColumnStretch(2, 1);
     for (int axis = 0; axis < 3; ++axis) {
-        grid->addWidget(new QLabel(kAxes[axis]), axis, 0);
+        m_axis[static_cast<std::size_t>(axis)] =
+            named(new QLabel(kAxes[axis]), QStringLiteral("clipAxis%1").arg(QString(kAxes[axis]).toUpper()));
+        grid->addWidget(m_axis[static_cast<std::size_t>(axis)], axis, 0);
         for (int side = 0; side < 2; ++side) {
-            auto* box = named(
-                new QDoubleSpinBox,
-                QStringLiteral("clip%1%2").arg(QString(kAxes[axis]).toUpper(), side == 0 ? "Lo" : "Hi"),
-                tr("The part of the box along %1 of its grid that is left, per cent of its length; picture and figures "
-                   "are of what is left")
-                    .arg(kAxes[axis]));
+            auto* box =
+                named(new QDoubleSpinBox,
+                      QStringLiteral("clip%1%2").arg(QString(kAxes[axis]).toUpper(), side == 0 ? "Lo" : "Hi"), {});
             withLook(box, {.hi = 100, .decimals = 1, .suffix = tr(" %")});
             grid->addWidget(box, axis, side + 1);
             m_box[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] = box;
             connect(box, &QDoubleSpinBox::valueChanged, this,
                     [this, axis, side](double percent) { editBox(axis, side == 1, percent); });
         }
+        nameAxis(static_cast<std::size_t>(axis), {});
     }
     return grid;
 }
@@ -153,6 +157,25 @@ void ClipPanel::changePlanes(const QString& text, const std::function<void(std::
     editPart(m_services.store(), &Session::clipping, text, {}, [&](Clipping& c) { change(c.planes); });
 }
 
+/// By the patient's directions, where there is a patient: the grid may run against them.
+void ClipPanel::nameAxis(std::size_t axis, const Geometry& geometry) {
+    const QString name = kAxes[axis];
+    QString tip =
+        tr("The part of the box along %1 of its grid that is left, per cent of its length; picture and figures "
+           "are of what is left")
+            .arg(name);
+    QString label = name;
+    if (geometry.worldAxes == WorldAxes::Patient) {
+        const Vec3 along = geometry.directions[static_cast<int>(axis)];
+        const QString from = QString::fromStdString(directionLetters(-along)),
+                      to = QString::fromStdString(directionLetters(along));
+        label = QStringLiteral("%1  %2→%3").arg(name, from, to);
+        tip += tr(". 0 % is at %1, 100 % at %2").arg(from, to);
+    }
+    m_axis[axis]->setText(label);
+    for (QDoubleSpinBox* box : m_box[axis]) box->setToolTip(tip);
+}
+
 void ClipPanel::editBox(int axis, bool upper, double percent) {
     editPart(
         m_services.store(), &Session::clipping, tr("Clip"), QStringLiteral("clip-%1-%2").arg(axis).arg(upper),
@@ -180,12 +203,13 @@ void ClipPanel::follow() {
     const Clipping& clipping = *scene.session.clipping;
     for (std::size_t i = 0; i < m_planes.size(); ++i) m_planes[i].widget->setVisible(i < clipping.planes.size());
     if (!m_services.store().hasVolume()) return;
+    const Geometry& geometry = scene.volume->geometry();
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
         showNumber(*m_box[axis][0], 100 * clipping.lo[a]);
         showNumber(*m_box[axis][1], 100 * clipping.hi[a]);
+        nameAxis(axis, geometry);
     }
-    const Geometry& geometry = scene.volume->geometry();
     const double size = 2 * geometry.radius();
     const QString unit = geometry.worldAxes == WorldAxes::Patient ? tr(" mm") : QString();
     for (std::size_t i = 0; i < clipping.planes.size(); ++i) {

@@ -113,6 +113,7 @@ protected:
         painter.setPen(contrast(color, theme::kPanel) < kMarkContrast ? seenOn(theme::kPanel, color) : theme::kLine);
         painter.drawRect(swatch.rect().adjusted(0, 0, -1, -1));
         option->icon = QIcon(swatch);
+        option->icon.addPixmap(swatch, QIcon::Selected); // as it is: a tinted one is another colour
     }
 };
 

@@ -50,7 +50,9 @@ bool InputHabits::eventFilter(QObject* watched, QEvent* event) {
             event->accept();
             return true;
         }
-        if (!key->matches(QKeySequence::Undo) && !key->matches(QKeySequence::Redo)) break;
+        // No number has a letter in it.
+        const bool isLetter = key->modifiers() == Qt::NoModifier && key->key() >= Qt::Key_A && key->key() <= Qt::Key_Z;
+        if (!isLetter && !key->matches(QKeySequence::Undo) && !key->matches(QKeySequence::Redo)) break;
         QAbstractSpinBox* box = numberBox(watched);
         if (box == nullptr || isBeingTyped(*box)) break;
         event->ignore(); // let the shortcut have it

@@ -3,7 +3,7 @@
 As a macro: select an image in the pipeline browser, show it as Volume, and run this. It asks "Pellucid: optimize
 transfer function" from where the render view looks, with equal shares of attention, and gives colours and opacities to
 the representation. Targets or a transfer function of your own: change them in the properties of the filter, and run
-the macro again with the filter selected.
+the macro again; it uses the filter that is there.
 """
 
 import json
@@ -48,14 +48,22 @@ def apply_answer(source, optimize, view):
     return table
 
 
+def is_optimize(proxy):
+    return proxy.GetXMLName() == "PellucidOptimize"
+
+
+def filter_for(source):
+    """The newest filter of ours that takes its image from `source`; a new one where there is none."""
+    ours = [proxy for proxy in simple.GetSources().values() if is_optimize(proxy) and proxy.Input == source]
+    return ours[-1] if ours else simple.Pellucidoptimizetransferfunction(Input=source)
+
+
 def main():
     view = GetActiveViewOrCreate("RenderView")
     active = GetActiveSource()
     if active is None:
         raise RuntimeError("select an image in the pipeline browser first")
-    isOptimize = active.GetXMLName() == "PellucidOptimize"
-    source = active.Input if isOptimize else active
-    optimize = active if isOptimize else simple.Pellucidoptimizetransferfunction(Input=source)
+    source, optimize = (active.Input, active) if is_optimize(active) else (active, filter_for(active))
     look_as(view, optimize)
     table = apply_answer(source, optimize, view)
     for row in range(table.GetNumberOfRows()):
