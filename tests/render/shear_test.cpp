@@ -263,6 +263,24 @@ TEST_CASE("pixels for a window are the quick picture in bytes, whichever way it 
             }
 }
 
+TEST_CASE("beside the volume the quick picture is background", "[sheared]") {
+    const auto volume = lumps({34, 30, 32});
+    const auto renderer = makeCpuRenderer(volume);
+    const RenderSettings settings = pictureOf(53, 41);
+    const std::uint32_t background = screenPixel(renderer->preview({}, tents(3, 0), settings, 1).rgba.data());
+    for (const Projection projection : {Projection::Orthographic, Projection::Perspective})
+        for (const double aside : {3.0, 20.0}) { // radii: of the volume none is in the picture, or it looks beside it
+            Camera camera = cameraFromView(volume->geometry(), 30, 25, 1, projection);
+            const Vec3 away = aside * volume->geometry().radius() * camera.right();
+            camera.eye += away;
+            camera.center += away;
+            if (!renderer->previewsInStorageOrder(camera, settings)) continue;
+            std::vector<std::uint32_t> pixels(53 * 41);
+            renderer->previewOnScreen(camera, tents(3, 0.3), settings, 1, pixels.data());
+            CHECK(std::count(pixels.begin(), pixels.end(), background) == 53 * 41);
+        }
+}
+
 TEST_CASE("what cannot be drawn in storage order is drawn by rays", "[sheared]") {
     const auto volume = lumps({24, 20, 22});
     const auto renderer = makeCpuRenderer(volume);

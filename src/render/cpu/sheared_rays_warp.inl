@@ -70,6 +70,7 @@ inline bool anyMet(const ShearedScene& s, int column0, int row0, int column1, in
 
 /// Pixels x0 … x1 − 1 of row y: false where none can show anything.
 inline bool anyMet(const ShearedScene& s, int x0, int x1, int y) {
+    if (s.width < 4 || s.height < 4) return false; // no pixel has four rays around it, and there may be no row at all
     const auto ofPixel = [&](int n, int x) {
         return s.ofPixel[n][0] + s.ofPixel[n][1] * (static_cast<float>(x) + 0.5f) +
                s.ofPixel[n][2] * (static_cast<float>(y) + 0.5f);
