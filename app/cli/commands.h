@@ -31,6 +31,7 @@ Command addPlot(CLI::App& program);
 Command addPropose(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
+Command addDensity(CLI::App& program);
 Command addSequence(CLI::App& program);
 Command addSpace(CLI::App& program);
 Command addSaliencyMap(CLI::App& program);

@@ -10,11 +10,11 @@ namespace {
 
 std::vector<Command> addCommands(CLI::App& program) {
     std::vector<Command> commands{
-        addInfo(program),    addSamples(program),     addPresets(program), addGenerate(program),  addRender(program),
-        addMeasure(program), addFields(program),      addRefine(program),  addOptimize(program),  addSequence(program),
-        addSpace(program),   addPlot(program),        addPropose(program), addProbe(program),     addRulers(program),
-        addViews(program),   addSaliencyMap(program), addCompare(program), addReproduce(program), addBench(program),
-        addFilm(program)};
+        addInfo(program),     addSamples(program), addPresets(program),     addGenerate(program), addRender(program),
+        addMeasure(program),  addFields(program),  addRefine(program),      addOptimize(program), addDensity(program),
+        addSequence(program), addSpace(program),   addPlot(program),        addPropose(program),  addProbe(program),
+        addRulers(program),   addViews(program),   addSaliencyMap(program), addCompare(program),  addReproduce(program),
+        addBench(program),    addFilm(program)};
     std::ranges::move(addStudy(program), std::back_inserter(commands));
     return commands;
 }

@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "optimize/answer/visibility_words.h"
 #include "optimize_report.h"
+#include "options/limit_options.h"
 #include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
@@ -20,29 +21,10 @@ namespace pellucid::cli {
 
 namespace {
 
-/// --limits NAME:LO:HI; --lock NAME.
-struct NamedLimits {
-    std::string name;
-    OpacityLimits limits;
-};
-
-NamedLimits parseLimits(const std::string& text, const std::string& option) {
-    const auto high = text.rfind(':'), low = high == std::string::npos || high == 0 ? high : text.rfind(':', high - 1);
-    if (high == std::string::npos || low == std::string::npos || low == 0)
-        throw UsageError("'" + text + "' is not of the form NAME:LO:HI", option, "write it as in bone:0.1:0.5");
-    OpacityLimits limits;
-    limits.lowest = parseReal(text.substr(low + 1, high - low - 1), option);
-    limits.highest = parseReal(text.substr(high + 1), option);
-    if (!(limits.lowest >= 0 && limits.lowest <= limits.highest && limits.highest <= 1))
-        throw UsageError("'" + text + "' needs 0 <= LO <= HI <= 1", option, "correct the limits");
-    return {text.substr(0, low), limits};
-}
-
 struct Options {
     SceneOptions scene;
     SettingOptions<OptimizeOptions> search;
-    std::vector<NamedLimits> limits;
-    std::vector<std::string> locked;
+    LimitOptions limits;
     std::optional<TargetInput> targets;
     std::optional<std::string> outTf, outCamera;
     bool requireConverged = false;
@@ -61,18 +43,6 @@ std::string seenLines(const OptimizeResult& r) {
     if (const std::string faint = faintText(r); !faint.empty())
         text += (r.converged() ? "On target, but faint: " : "Faint: ") + faint + "\n";
     return text;
-}
-
-/// Those of the session, and over them what is given.
-std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
-    std::vector<OpacityLimits> limits = pellucid::limitsOf(scene.tf, *scene.session.goals);
-    for (const NamedLimits& given : o.limits) {
-        OpacityLimits& l = limits[parseFeature(given.name, "--limits", scene.tf)];
-        l.lowest = given.limits.lowest;
-        l.highest = given.limits.highest;
-    }
-    for (const std::string& name : o.locked) limits[parseFeature(name, "--lock", scene.tf)].locked = true;
-    return limits;
 }
 
 std::string textOf(const OptimizeResult& r, const std::vector<std::string>& names, const std::string& engine,
@@ -125,7 +95,7 @@ Answer run(const Options& o, Progress& progress) {
     const std::vector<double> targets = targetsOf(o.targets, scene, notices);
     OptimizeOptions options = *scene.session.optimize;
     o.search.applyTo(options);
-    const std::vector<OpacityLimits> limits = limitsOf(o, scene);
+    const std::vector<OpacityLimits> limits = o.limits.of(scene);
     MeasureInput input = measureInput(scene);
     Workspace workspace;
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
@@ -191,9 +161,7 @@ Command addOptimize(CLI::App& program) {
         "one number for each feature, from 0 on, scaled to sum 1; or all equal, by the value of their peaks, turned "
         "round, or all for one; required unless a session has targets");
     o->search.add(*app);
-    addRepeated(*app, "--limits", "NAME:LO:HI", o->limits, parseLimits,
-                "keep the opacity of this feature within LO and HI");
-    addRepeated(*app, "--lock", "NAME", o->locked, anyText, "keep the opacity of this feature as it is");
+    o->limits.add(*app);
     addOutputFile(*app, "--out-tf", o->outTf,
                   "write the optimized transfer function (the best one seen)" + std::string(kTfFileHelp));
     o->report.add(*app);

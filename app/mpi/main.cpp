@@ -16,8 +16,8 @@ namespace pellucid::cli {
 namespace {
 
 std::vector<Command> addCommands(CLI::App& program) {
-    return {addInfo(program),     addMeasure(program), addFields(program), addRefine(program),  addPropose(program),
-            addOptimize(program), addViews(program),   addRender(program), addSequence(program)};
+    return {addInfo(program),     addMeasure(program), addFields(program), addRefine(program), addPropose(program),
+            addOptimize(program), addDensity(program), addViews(program),  addRender(program), addSequence(program)};
 }
 
 constexpr std::uint64_t kMostForFrames = std::uint64_t{2} << 30; ///< bytes per rank, of frames that may be wanted again

@@ -60,16 +60,19 @@ public:
 private:
     // ---- marks
 
-    bool isFree(const PixelBox& box) const {
-        if (box.left < 0 || box.top < 0 || box.right > m_width || box.bottom > m_height) return false;
-        return std::ranges::none_of(m_taken, [&](const PixelBox& t) { return t.meets(box); });
+    bool isInPicture(const PixelBox& box) const {
+        return box.left >= 0 && box.top >= 0 && box.right <= m_width && box.bottom <= m_height;
     }
-    /// Adds marks that belong together, and keeps others away from them; false: there is no room.
-    bool place(std::vector<Mark> group) {
+    bool isTaken(const PixelBox& box) const {
+        return std::ranges::any_of(m_taken, [&](const PixelBox& t) { return t.meets(box); });
+    }
+    /// Adds marks that belong together, and keeps others away from them, by `apart` pixels from those that lie there
+    /// now; false: there is no room.
+    bool place(std::vector<Mark> group, double apart = 0) {
         if (group.empty()) return false;
         PixelBox box = extentOf(group.front());
         for (const Mark& mark : group) box = joined(box, extentOf(mark));
-        if (!isFree(box)) return false;
+        if (!isInPicture(box) || isTaken(box.widened(apart))) return false;
         m_taken.push_back(box);
         std::move(group.begin(), group.end(), std::back_inserter(m_marks));
         return true;
@@ -346,7 +349,8 @@ private:
             const Vec2 way = outward * side;
             const double support = std::abs(way.x) * halfWidth + std::abs(way.y) * 0.5 * m_cap;
             if (place({textMark(AnnotationPart::Axes, text, at + way * (distance + support), Align::Middle,
-                                Align::Middle, m_cap)}))
+                                Align::Middle, m_cap)},
+                      0.5 * m_cap))
                 return true;
             if (!otherSideToo) break;
         }

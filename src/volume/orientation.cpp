@@ -61,18 +61,20 @@ double obliqueAngle(const Geometry& geometry) {
     return most * kDegrees;
 }
 
-std::string axesText(const Geometry& geometry) {
+std::string axisText(const Geometry& geometry, int axis) {
+    const Vec3& d = geometry.directions[axis];
+    const int nearest = largest(d);
+    const bool positive = d[nearest] > 0;
     std::string text;
-    for (int a = 0; a < 3; ++a) {
-        if (a > 0) text += ", ";
-        const Vec3& d = geometry.directions[a];
-        const int axis = largest(d);
-        const bool positive = d[axis] > 0;
-        if (geometry.worldAxes == WorldAxes::Patient)
-            text.append(1, patientLetter(axis, !positive)).append("→").append(1, patientLetter(axis, positive));
-        else
-            text.append(positive ? "+" : "-").append(1, "xyz"[axis]);
-    }
+    if (geometry.worldAxes == WorldAxes::Patient)
+        text.append(1, patientLetter(nearest, !positive)).append("→").append(1, patientLetter(nearest, positive));
+    else
+        text.append(positive ? "+" : "-").append(1, "xyz"[nearest]);
+    return text;
+}
+
+std::string axesText(const Geometry& geometry) {
+    std::string text = axisText(geometry, 0) + ", " + axisText(geometry, 1) + ", " + axisText(geometry, 2);
     if (const double angle = obliqueAngle(geometry); angle > 0.5)
         text += ", " + std::to_string(std::lround(angle)) + "° oblique";
     return text;

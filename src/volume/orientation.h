@@ -35,7 +35,10 @@ std::string directionLetters(const Vec3& direction);
 /// degrees, [0, 54.8).
 double obliqueAngle(const Geometry& geometry);
 
-/// How i, j, k run: "R→L, A→P, I→S" where the world is the patient's, else "+x, +y, +z", by the nearest world axis;
+/// How one of i, j, k (0, 1, 2) runs, by the nearest world axis: "R→L" where the world is the patient's, else "+x".
+std::string axisText(const Geometry& geometry, int axis);
+
+/// axisText() of i, j, k: "R→L, A→P, I→S" or "+x, +y, +z";
 /// with ", 12° oblique" where they are farther than half a degree from it.
 std::string axesText(const Geometry& geometry);
 

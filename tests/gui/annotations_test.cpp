@@ -147,7 +147,7 @@ TEST_CASE("views speak anatomy where the file does", "[frame]") {
     CHECK(w.services().actions().keyTable().contains("Anterior"));
     CHECK(w.child<QLabel>("volumeLabel").toolTip().contains("L→R, P→A, I→S"));
     CHECK(w.child<QLabel>("clipAxisY").text() == "y  P→A");
-    CHECK(w.child<QDoubleSpinBox>("clipYHi").toolTip().endsWith("0 % is at P, 100 % at A"));
+    CHECK(w.child<QDoubleSpinBox>("clipYHi").toolTip().endsWith("From 0 to 100 % it runs P→A"));
     // World is LPS: left is +x. From the left the eye is there; from the feet the front, -y, is up.
     w.child<QAction>("view3").trigger();
     CHECK(w.document().camera().forward().x == Approx(-1));

@@ -213,6 +213,20 @@ TEST_CASE("ranks find the view that one process finds", "[mpi]") {
         CHECK(std::abs(many["views"][i]["value"].get<double>() - one["views"][i]["value"].get<double>()) < 1e-4);
 }
 
+TEST_CASE("ranks follow the curve of equal shares that one process follows", "[mpi]") {
+    const Workshop shop;
+    const Words words = Words{"density"} + rawVolume(shop) + Words{"--tf", "tents:3:0.3", "--coverage", "0.4"};
+    const json one = ofOne(shop, words), many = ofMany(shop, 2, words);
+    REQUIRE(many["points"].size() == one["points"].size());
+    const auto near = [](const json& a, const json& b) { // opacities between two points that rays along blocks moved
+        for (std::size_t i = 0; i < a.size(); ++i) CHECK(std::abs(a[i].get<double>() - b[i].get<double>()) < 2e-3);
+    };
+    for (std::size_t i = 0; i < one["points"].size(); ++i)
+        near(many["points"][i]["opacity"], one["points"][i]["opacity"]);
+    near(many["chosen"]["opacity"], one["chosen"]["opacity"]);
+    near(many["chosen"]["vws"], one["chosen"]["vws"]);
+}
+
 TEST_CASE("ranks follow a series as one process does", "[mpi]") {
     const Workshop shop;
     rawVolume(shop);

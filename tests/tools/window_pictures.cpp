@@ -7,6 +7,8 @@
 //     click:NAME          a press on a button
 //     set:NAME=VALUE      a number, a choice or a text into a control
 //     select:N            feature N, from 0
+//     at:NAME=X,Y         a click on a widget, X and Y in parts of its width and height
+//     overlay:FILE        a second volume over the first
 //     of:NAME             the picture is of this widget alone
 //     dialog:NAME         last: the action opens a dialog, of which the picture is
 // --areas prints what picture, plot and bars have of the window, in logical pixels.
@@ -94,6 +96,17 @@ void take(MainWindow& window, Output& out, const QString& step) {
     if (kind == "select") {
         const auto& features = window.services().scene().tf.features;
         return window.services().selection().setFeature(features.at(static_cast<std::size_t>(name.toInt())).id);
+    }
+    if (kind == "at") {
+        auto& widget = found<QWidget>(window, name.section('=', 0, 0));
+        const QStringList place = name.section('=', 1).split(',');
+        const QPointF at(place.at(0).toDouble() * widget.width(), place.at(1).toDouble() * widget.height());
+        return QTest::mouseClick(&widget, Qt::LeftButton, {}, at.toPoint());
+    }
+    if (kind == "overlay") {
+        VolumeSource source;
+        source.path = name.toStdString();
+        return window.controllers().overlays.lay(source);
     }
     if (kind == "of") {
         out.of = &found<QWidget>(window, name);

@@ -98,7 +98,7 @@ ComparisonController::ComparisonController(Services& services, PlayerController&
               return task.path;
           },
           [this](const Task&, const QString& path) {
-              Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+              m_services.saySaved(path);
               Q_EMIT saved(path);
           },
           WhenBusy::Queue) {

@@ -30,7 +30,7 @@ FieldController::FieldController(Services& services)
               return file.path;
           },
           [this](const File&, const QString& path) {
-              Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+              m_services.saySaved(path);
               Q_EMIT saved(path);
           },
           WhenBusy::Queue) {

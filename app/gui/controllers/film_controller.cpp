@@ -31,8 +31,7 @@ FilmController::FilmController(Services& services)
                 for (const std::string& frame : film->passedOver)
                     m_services.notices().add({tr("Not in the film: %1").arg(QString::fromStdString(frame))});
                 const QString path = QString::fromStdString(task->path);
-                Q_EMIT m_services.message(
-                    tr("Saved %1: %L2 pictures").arg(QFileInfo(path).fileName()).arg(film->pictures));
+                m_services.saySaved(path, tr("%L1 pictures").arg(film->pictures));
                 Q_EMIT saved(path);
             },
             WhenBusy::Queue) {

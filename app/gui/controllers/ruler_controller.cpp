@@ -315,7 +315,7 @@ bool RulerController::exportTo(const QString& path) {
         writeTextAtomically(path.toStdString(),
                             csvOf(*scene.session.rulers, readRulers(*scene.session.rulers, *scene.data),
                                   scene.data->geometry(), scene.session.coordinates->axes));
-        Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+        m_services.saySaved(path);
     });
 }
 

@@ -56,7 +56,7 @@ SaveController::SaveController(Services& services, FieldController& fields,
               return picture.path;
           },
           [this](const Picture&, const QString& path) {
-              saySaved(path);
+              m_services.saySaved(path);
               Q_EMIT imageSaved(path);
           },
           WhenBusy::Queue),
@@ -69,9 +69,7 @@ SaveController::SaveController(Services& services, FieldController& fields,
               writeReport(makeReport(request, workspace, job), task.folder.toStdString());
               return task.folder;
           },
-          [this](const ReportTask&, const QString& folder) {
-              Q_EMIT m_services.message(tr("Saved the report in %1").arg(QFileInfo(folder).fileName()));
-          },
+          [this](const ReportTask&, const QString& folder) { m_services.saySaved(folder, tr("with the report")); },
           WhenBusy::Queue, &services.compute()) {
     for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports}) {
         connect(job, &JobBase::busyChanged, this, &SaveController::busyChanged);
@@ -117,7 +115,7 @@ bool SaveController::saveSession(const QString& path) {
         writeSession(m_services.store().committed().session, path.toStdString());
         setSessionPath(path);
         m_services.store().setClean();
-        saySaved(path);
+        m_services.saySaved(path);
     });
 }
 
@@ -130,14 +128,14 @@ bool SaveController::saveTf(const QString& path) {
             setTfPath(path);
             m_services.store().setTfSaved();
         }
-        saySaved(path);
+        m_services.saySaved(path);
     });
 }
 
 bool SaveController::saveBars(const QString& path) {
     return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the bars"), [&] {
         writeShareCharts(presentBars(m_services, m_pictureSaliency), path.toStdString());
-        saySaved(path);
+        m_services.saySaved(path);
     });
 }
 
@@ -146,12 +144,8 @@ bool SaveController::saveTfDrawing(const QString& path) {
         const Scene& scene = m_services.scene();
         const Plot plot = tfPlot(scene.tf, {scene.volume->range(), scene.unit.value_or(""), scene.histogram.get()});
         writeDrawing([&](const PlotPage& page) { return drawingOf(plot, page); }, {}, path.toStdString());
-        saySaved(path);
+        m_services.saySaved(path);
     });
-}
-
-void SaveController::saySaved(const QString& path) {
-    Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
 }
 
 void SaveController::saveImage(const SaveImageOptions& options) {

@@ -73,7 +73,6 @@ private:
         QString folder;
     };
     const Run* latestRun() const; ///< that a report can be made of; null: none
-    void saySaved(const QString& path);
     bool mayReplace(const QString& file, const QString& title, const QString& question); ///< asks where it is there
     bool chooseSession(bool askForName);
     bool chooseTf(bool askForName);

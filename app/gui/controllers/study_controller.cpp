@@ -55,7 +55,7 @@ StudyController::StudyController(Services& services)
               return file;
           },
           [this](const Analysis&, const QString& file) {
-              Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(file).fileName()));
+              m_services.saySaved(file);
               if (!QDesktopServices::openUrl(QUrl::fromLocalFile(file)))
                   m_services.notices().add({tr("The report is in %1. No program was found to show it").arg(file)});
               Q_EMIT analyzed(file);

@@ -166,11 +166,9 @@ void ClipPanel::nameAxis(std::size_t axis, const Geometry& geometry) {
             .arg(name);
     QString label = name;
     if (geometry.worldAxes == WorldAxes::Patient) {
-        const Vec3 along = geometry.directions[static_cast<int>(axis)];
-        const QString from = QString::fromStdString(directionLetters(-along)),
-                      to = QString::fromStdString(directionLetters(along));
-        label = QStringLiteral("%1  %2→%3").arg(name, from, to);
-        tip += tr(". 0 % is at %1, 100 % at %2").arg(from, to);
+        const QString run = QString::fromStdString(axisText(geometry, static_cast<int>(axis)));
+        label = QStringLiteral("%1  %2").arg(name, run);
+        tip += tr(". From 0 to 100 % it runs %1").arg(run);
     }
     m_axis[axis]->setText(label);
     for (QDoubleSpinBox* box : m_box[axis]) box->setToolTip(tip);

@@ -71,7 +71,7 @@ void exportCurves(Services& services, const QString& path, const std::function<s
             writeTextAtomically(path.toStdString(), table());
         else
             writePlots(path.toStdString(), plots());
-        Q_EMIT services.message(QObject::tr("Saved %1").arg(file.fileName()));
+        services.saySaved(path);
     } catch (const Error& error) {
         services.showError(QObject::tr("Cannot export the curves"), error);
     }

@@ -81,9 +81,7 @@ void SpacePanel::takeSpace(const Task& task, ParameterSpace& space) {
 SpacePanel::SpacePanel(Services& services, QWidget* parent)
     : QWidget(parent), m_services(services),
       m_job(sampled, [this](const Task& task, ParameterSpace& space) { takeSpace(task, space); }),
-      m_saving(written, [this](const Saving& task, bool&) {
-          Q_EMIT m_services.message(tr("Saved %1.").arg(QString::fromStdString(task.path)));
-      }) {
+      m_saving(written, [this](const Saving& task, bool&) { m_services.saySaved(QString::fromStdString(task.path)); }) {
     setObjectName("spacePanel");
     const char* const axisNames[] = {"X", "Y", "Z"};
     for (std::size_t a = 0; a < 3; ++a) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <QDir>
+#include <QFileInfo>
+
 #include "dialogs/error_dialog.h"
 #include "tf/shapes.h"
 
@@ -28,11 +31,23 @@ bool Services::isIdle() const {
 
 // A file of the other state may have gone: then the present state stays.
 void Services::undo() {
-    if (!isReadOnly() && m_store.canUndo()) attempt(tr("This cannot be undone now"), [this] { m_store.undo(); });
+    if (isReadOnly() || !m_store.canUndo()) return;
+    const QString step = m_store.undoText();
+    if (attempt(tr("This cannot be undone now"), [this] { m_store.undo(); }))
+        Q_EMIT message(tr("Undone: %1").arg(step));
 }
 
 void Services::redo() {
-    if (!isReadOnly() && m_store.canRedo()) attempt(tr("This cannot be done again now"), [this] { m_store.redo(); });
+    if (isReadOnly() || !m_store.canRedo()) return;
+    const QString step = m_store.redoText();
+    if (attempt(tr("This cannot be done again now"), [this] { m_store.redo(); }))
+        Q_EMIT message(tr("Done again: %1").arg(step));
+}
+
+void Services::saySaved(const QString& path, const QString& more) {
+    const QFileInfo file(path);
+    const QString text = tr("Saved %1 in %2").arg(file.fileName(), QDir::toNativeSeparators(file.absolutePath()));
+    Q_EMIT message(more.isEmpty() ? text : tr("%1 (%2)").arg(text, more));
 }
 
 void Services::showError(const QString& title, const Error& error) { pellucid::gui::showError(m_window, title, error); }

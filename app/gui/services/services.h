@@ -56,7 +56,9 @@ public:
     /// Does something that may throw Error, which is shown then. Whether all went well.
     bool attempt(const QString& title, const std::function<void()>& work);
     void showFailuresOf(JobBase& job, const QString& title); ///< from now on, whenever it fails
-    /// A step of the history; where it fails the state stays, and people are told.
+    /// In the status line: what was saved, in which folder, and what more there is to say of it.
+    void saySaved(const QString& path, const QString& more = {});
+    /// A step of the history, which the status line names; where it fails the state stays, and people are told.
     void undo();
     void redo();
 

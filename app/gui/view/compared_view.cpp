@@ -45,12 +45,13 @@ protected:
         if (scene == nullptr || !m_comparing.hasB()) return;
         QPainter painter(this);
         painter.setRenderHint(QPainter::Antialiasing);
-        AnnotationLayer().paint(painter, {*scene, QSizeF(size())});
+        m_annotations.paint(painter, {*scene, QSizeF(size())});
         paintSideName(painter, seen, ComparedView::tr("B: %1").arg(QString::fromStdString(m_comparing.view().b->name)));
     }
 
 private:
     ComparisonController& m_comparing;
+    AnnotationLayer m_annotations;
 };
 
 ComparedView::ComparedView(ComparisonController& comparing, VolumeView& viewOfA, QWidget* parent)

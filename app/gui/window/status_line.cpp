@@ -17,7 +17,7 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kMessageTime = 4000; // milliseconds
+constexpr int kMessageTime = 8000; // milliseconds
 
 } // namespace
 

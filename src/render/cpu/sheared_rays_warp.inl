@@ -203,25 +203,30 @@ void warpTileTo(const ShearedScene& s, const PacketTile& tile, Pixel* pixels) {
     for (int y = tile.y0; y < tile.y1; ++y) {
         const Short16 behind = behindRow(scene, y), empty = over(Short16{}, behind);
         Pixel* const row = pixels + static_cast<std::int64_t>(y) * scene.width;
+        // Pixels x0 … x1 − 1, four at a time; color(n) is of the four from the n-th on.
+        const auto fill = [&](int x0, int x1, auto color) {
+            for (int x = x0; x < x1; x += 4) putPixels(row + x, color(x - x0), smaller(4, x1 - x));
+        };
+        const auto nothing = [&](int) { return empty; };
         if (!anyMet(s, tile.x0, tile.x1, y)) {
-            for (int x = tile.x0; x < tile.x1; x += 4) putPixels(row + x, empty, tile.x1 - x < 4 ? tile.x1 - x : 4);
+            fill(tile.x0, tile.x1, nothing);
             continue;
         }
         for (int x = tile.x0; x < tile.x1; x += kWide) {
-            const int count = smaller(kWide, tile.x1 - x);
+            const int end = smaller(x + kWide, tile.x1);
             const WarpedRow rays(s, x, y);
             if (!rays.maybeDrawn(s)) {
-                for (int n = 0; n < count; n += 4) putPixels(row + x + n, empty, count - n < 4 ? count - n : 4);
+                fill(x, end, nothing);
                 continue;
             }
             int first[kWide];
             store(first, (rays.row - 1) * static_cast<int>(s.stride) + (rays.column - 1) * 4);
-            for (int n = 0; n < count; n += 4) {
+            fill(x, end, [&](int n) {
                 const Int4 inside{rays.inside[n], rays.inside[n + 1], rays.inside[n + 2], rays.inside[n + 3]};
-                const Short16 color =
-                    rays.fourFrom(s, first, n) & reinterpret_cast<Short16>(__builtin_convertvector(inside, Long4));
-                putPixels(row + x + n, over(color, behind), count - n < 4 ? count - n : 4);
-            }
+                return over(rays.fourFrom(s, first, n) &
+                                reinterpret_cast<Short16>(__builtin_convertvector(inside, Long4)),
+                            behind);
+            });
         }
     }
 }

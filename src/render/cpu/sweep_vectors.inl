@@ -44,11 +44,11 @@ inline void store(int* p, Int8 v) { *reinterpret_cast<Int8InMemory*>(p) = v; }
 inline Vec8 toFloat(Int8 v) { return __builtin_convertvector(v, Vec8); }
 inline Vec8 toFloat(UShort8 v) { return __builtin_convertvector(__builtin_convertvector(v, Int8), Vec8); }
 inline Int8 toInt(Vec8 v) { return __builtin_convertvector(v, Int8); } ///< towards 0
-inline Vec8 asFloats(const std::uint16_t* p) { return toFloat(load(p)); }
-inline Vec8 asFloats(const std::uint8_t* p) { return toFloat(__builtin_convertvector(load(p), Int8)); }
-inline Vec8 asFloats(const float* p) { return load(p); }
 inline Int8 asInts(const std::uint16_t* p) { return __builtin_convertvector(load(p), Int8); }
 inline Int8 asInts(const std::uint8_t* p) { return __builtin_convertvector(load(p), Int8); }
+inline Vec8 asFloats(const std::uint16_t* p) { return toFloat(load(p)); }
+inline Vec8 asFloats(const std::uint8_t* p) { return toFloat(asInts(p)); }
+inline Vec8 asFloats(const float* p) { return load(p); }
 inline UShort8 asCodes(const std::uint16_t* p) { return load(p); }
 inline UShort8 asCodes(const std::uint8_t* p) { return __builtin_convertvector(load(p), UShort8); }
 
