@@ -437,11 +437,19 @@ TEST_CASE("headers that leave something out or contradict themselves are refused
     nifti.voxOffset = -5;
     CHECK_THAT(errorOf(folder.write("b.nii", nifti.header() + std::string(24, 'x'))), Contains("vox_offset"));
     nifti = Nifti{};
-    nifti.size = 540;
-    CHECK_THAT(errorOf(folder.write("c.nii", nifti.header() + std::string(240, 'x'))), Contains("NIfTI-2"));
+    nifti.size = 540; // and the rest of NIfTI-1
+    CHECK_THAT(errorOf(folder.write("c.nii", nifti.header() + std::string(240, 'x'))), Contains("mark of NIfTI-2"));
+    CHECK_THAT(errorOf(folder.write("c.nii", Nifti{}.header2().substr(0, 500))), Contains("fewer than a NIfTI header"));
+    std::string asText = Nifti{}.header2();
+    asText.erase(asText.find('\r'), 1);
+    CHECK_THAT(errorOf(folder.write("c.nii", asText + std::string(25, 'x'))), Contains("as text"));
     nifti = Nifti{};
     nifti.magic = "ni1";
-    CHECK_THAT(errorOf(folder.write("d.nii", nifti.header() + std::string(24, 'x'))), Contains(".hdr/.img"));
+    CHECK_THAT(errorOf(folder.write("d.nii", nifti.header() + std::string(24, 'x'))), Contains("end in .hdr"));
+    const std::string header = folder.write("d.hdr", nifti.header());
+    CHECK_THAT(errorOf(header), Contains("no file d.img beside it"));
+    folder.write("d.img", std::string(23, 'x'));
+    CHECK_THAT(errorOf(header), Contains("23 of 24 bytes"));
 }
 
 TEST_CASE("NIfTI numbers that are not finite are refused wherever they would be used", "[bad-input]") {

@@ -1,9 +1,10 @@
-// NIfTI-1 in one file, plain or gzip-compressed.
+// NIfTI-1 and NIfTI-2, in one file or as a pair of header and data, plain or gzip-compressed.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -19,11 +20,22 @@ namespace pellucid {
 
 namespace {
 
-constexpr std::size_t kHeaderBytes = 348;
+/// Where fields stand in a header, and in which type: 1 has 16-bit integers and single precision, 2 has wider ones.
+struct HeaderForm {
+    int version;
+    std::size_t bytes, magic;
+    std::size_t datatype, dim, pixdim, voxOffset, slope, intercept, timeOffset;
+    std::size_t qformCode, sformCode, qform, sform, units, intent;
+};
+constexpr HeaderForm kForms[]{
+    {1, 348, 344, 70, 40, 76, 108, 112, 116, 136, 252, 254, 256, 280, 123, 68},
+    {2, 540, 4, 12, 16, 104, 168, 176, 184, 216, 344, 348, 352, 400, 500, 504},
+};
+constexpr std::size_t kLargestHeader = 540;
 
-/// The first 348 bytes, unpacked where the file is gzip; fewer where there are no more.
+/// The first bytes, unpacked where the file is gzip; fewer where there are no more.
 std::vector<unsigned char> headerBytes(const std::string& path) {
-    std::vector<unsigned char> bytes(kHeaderBytes);
+    std::vector<unsigned char> bytes(kLargestHeader);
     const gzFile file = gzopen(path.c_str(), "rb"); // reads plain files as they are
     if (file == nullptr) throw FileError("cannot read the file", path, "check its permissions");
     const int read = gzread(file, bytes.data(), static_cast<unsigned>(bytes.size()));
@@ -32,28 +44,32 @@ std::vector<unsigned char> headerBytes(const std::string& path) {
     return bytes;
 }
 
-/// Fields of the header at their offsets, in either byte order.
+bool isGzip(const std::string& path) { return fileHead(path, 2) == "\x1f\x8b"; }
+
+/// A header of NIfTI-1 or NIfTI-2, in either byte order.
 class NiftiHeader {
 public:
     explicit NiftiHeader(const std::string& path) : m_path(path), m_bytes(headerBytes(path)) {
-        if (m_bytes.size() < kHeaderBytes) {
+        const HeaderForm* const form = m_bytes.size() < sizeof(std::int32_t) ? nullptr : formBySize();
+        if (m_bytes.size() < (form != nullptr ? form->bytes : kForms[0].bytes)) {
             const std::string head = fileHead(path, 1024);
-            if (head.starts_with("\x1f\x8b"))
-                fail("the compressed file holds " + std::to_string(m_bytes.size()) +
-                         " readable bytes, fewer than a NIfTI header",
+            if (form != nullptr || head.starts_with("\x1f\x8b"))
+                fail("the file holds " + std::to_string(m_bytes.size()) + " readable bytes, fewer than a NIfTI header",
                      "copy the file again");
             throw notOfFormat("a NIfTI file", path, head);
         }
-        const auto size = at<std::int32_t>(0);
-        m_swapped = size != 348 && size != 540;
-        const auto sizeSwapped = at<std::int32_t>(0);
-        if (sizeSwapped == 540) fail("NIfTI-2 is not supported", "convert it to NIfTI-1, MetaImage or NRRD");
-        if (sizeSwapped != 348)
+        if (form == nullptr)
             throw notOfFormat("a NIfTI file", path, {reinterpret_cast<const char*>(m_bytes.data()), m_bytes.size()});
-        if (std::memcmp(m_bytes.data() + 344, "ni1", 4) == 0)
-            fail("this is the header of a .hdr/.img pair", "convert it to one .nii file");
-        if (std::memcmp(m_bytes.data() + 344, "n+1", 4) != 0)
-            fail("the header lacks the mark of NIfTI-1", "convert an Analyze file to NIfTI first");
+        m_form = *form;
+        const char version = m_form.version == 2 ? '2' : '1';
+        const std::string mark(reinterpret_cast<const char*>(m_bytes.data()) + m_form.magic, 4);
+        m_isPair = mark == std::string("ni") + version + '\0';
+        if (!m_isPair && mark != std::string("n+") + version + '\0')
+            fail(std::string("the header lacks the mark of NIfTI-") + version,
+                 "convert an Analyze file to NIfTI first");
+        if (m_form.version == 2 && std::memcmp(m_bytes.data() + m_form.magic + 4, "\r\n\032\n", 4) != 0)
+            fail("the line ends in the header's mark are others than NIfTI-2 has: the file was copied as text",
+                 "copy it again, as binary data");
     }
 
     [[noreturn]] void fail(const std::string& what, const std::string& toDo) const {
@@ -61,25 +77,51 @@ public:
     }
 
     const std::string& path() const { return m_path; }
-    int dim(int i) const { return at<std::int16_t>(40 + 2 * static_cast<std::size_t>(i)); }
-    int datatype() const { return at<std::int16_t>(70); }
-    float pixdim(int i) const { return at<float>(76 + 4 * static_cast<std::size_t>(i)); }
-    float voxOffset() const { return at<float>(108); }
-    float slope() const { return at<float>(112); }
-    float intercept() const { return at<float>(116); }
-    int intent() const { return at<std::int16_t>(68); }
-    int spaceUnit() const { return m_bytes[123] & 7; }
-    int timeUnit() const { return m_bytes[123] & 0x38; }
-    float timeOffset() const { return at<float>(136); }
-    int qformCode() const { return at<std::int16_t>(252); }
-    int sformCode() const { return at<std::int16_t>(254); }
+    /// The data are in a file of their own, *.img.
+    bool isPair() const { return m_isPair; }
+    std::size_t bytes() const { return m_form.bytes; }
+    std::int64_t dim(int i) const { return integer<std::int16_t, std::int64_t>(m_form.dim, i); }
+    int datatype() const { return at<std::int16_t>(m_form.datatype); }
+    double pixdim(int i) const { return real(m_form.pixdim, i); }
+    double voxOffset() const {
+        return m_form.version == 1 ? at<float>(m_form.voxOffset)
+                                   : static_cast<double>(at<std::int64_t>(m_form.voxOffset));
+    }
+    double slope() const { return real(m_form.slope); }
+    double intercept() const { return real(m_form.intercept); }
+    int intent() const { return static_cast<int>(integer<std::int16_t, std::int32_t>(m_form.intent)); }
+    int spaceUnit() const { return units() & 7; }
+    int timeUnit() const { return units() & 0x38; }
+    double timeOffset() const { return real(m_form.timeOffset); }
+    bool hasQform() const { return integer<std::int16_t, std::int32_t>(m_form.qformCode) > 0; }
+    bool hasSform() const { return integer<std::int16_t, std::int32_t>(m_form.sformCode) > 0; }
     /// b, c, d of the quaternion, then the offsets.
-    float qform(int i) const { return at<float>(256 + 4 * static_cast<std::size_t>(i)); }
+    double qform(int i) const { return real(m_form.qform, i); }
     /// Row by row, 3 x 4.
-    float sform(int row, int column) const { return at<float>(280 + 4 * static_cast<std::size_t>(4 * row + column)); }
+    double sform(int row, int column) const { return real(m_form.sform, 4 * row + column); }
     bool isBigEndian() const { return m_swapped != (std::endian::native == std::endian::big); }
 
 private:
+    /// By the size that the header gives of itself, in the byte order in which that is one; null: in neither.
+    const HeaderForm* formBySize() {
+        for (const bool swapped : {false, true}) {
+            m_swapped = swapped;
+            const auto size = at<std::int32_t>(0);
+            for (const HeaderForm& form : kForms)
+                if (size == static_cast<std::int32_t>(form.bytes)) return &form;
+        }
+        return nullptr;
+    }
+    template <class First, class Second>
+    std::int64_t integer(std::size_t offset, int i = 0) const {
+        const auto n = static_cast<std::size_t>(i);
+        return m_form.version == 1 ? at<First>(offset + n * sizeof(First)) : at<Second>(offset + n * sizeof(Second));
+    }
+    double real(std::size_t offset, int i = 0) const {
+        const auto n = static_cast<std::size_t>(i);
+        return m_form.version == 1 ? at<float>(offset + n * sizeof(float)) : at<double>(offset + n * sizeof(double));
+    }
+    int units() const { return m_form.version == 1 ? m_bytes[m_form.units] : at<std::int32_t>(m_form.units); }
     template <class T>
     T at(std::size_t offset) const {
         std::array<unsigned char, sizeof(T)> bytes{};
@@ -92,8 +134,30 @@ private:
 
     std::string m_path;
     std::vector<unsigned char> m_bytes;
-    bool m_swapped = false;
+    bool m_swapped = false, m_isPair = false;
+    HeaderForm m_form = kForms[0];
 };
+
+/// The file that holds the data: `header` itself, or the *.img beside a *.hdr, packed or not. Throws FileError where
+/// there is none.
+std::string dataPathOf(const NiftiHeader& header) {
+    if (!header.isPair()) return header.path();
+    std::string stem = header.path();
+    for (const std::string_view packed : {".gz", ".GZ"})
+        if (stem.ends_with(packed)) stem.resize(stem.size() - packed.size());
+    const bool upper = stem.ends_with(".HDR");
+    if (!upper && !stem.ends_with(".hdr"))
+        header.fail("this is the header of a pair of files, whose name should end in .hdr",
+                    "name it so, and the file with the data beside it .img");
+    stem.resize(stem.size() - 4);
+    const std::string image = stem + (upper ? ".IMG" : ".img");
+    std::error_code ec;
+    for (const std::string& path : {image, image + (upper ? ".GZ" : ".gz")})
+        if (std::filesystem::is_regular_file(path, ec)) return path;
+    header.fail("the data of this header are not there: no file " + std::filesystem::path(image).filename().string() +
+                    " beside it",
+                "put the file there; both belong together");
+}
 
 struct NiftiType {
     std::int64_t components; ///< of one voxel, beside each other
@@ -120,7 +184,7 @@ bool fifthAxisHasComponents(int intent) {
 }
 
 std::vector<FileAxis> axesIn(const NiftiHeader& header, const NiftiType& type) {
-    const int count = header.dim(0);
+    const std::int64_t count = header.dim(0);
     if (count < 1 || count > 7)
         header.fail("the header gives " + std::to_string(count) + " axes, not 1 to 7", "correct the header");
     const bool vector = count >= 5 && header.dim(5) > 1 && fifthAxisHasComponents(header.intent());
@@ -201,7 +265,7 @@ bool agree(const Placement& one, const Placement& other) {
 /// sform where the header has one, else qform. Empty where it has neither: then the grid's own axes are the world's.
 std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spacing,
                                      std::vector<std::string>& notices) {
-    const bool hasQform = header.qformCode() > 0, hasSform = header.sformCode() > 0;
+    const bool hasQform = header.hasQform(), hasSform = header.hasSform();
     bool finite = true;
     for (int i = 0; i < 6; ++i) finite = finite && (!hasQform || std::isfinite(header.qform(i)));
     for (int i = 0; i < 12; ++i) finite = finite && (!hasSform || std::isfinite(header.sform(i / 4, i % 4)));
@@ -226,7 +290,7 @@ double millimetresIn(const NiftiHeader& header) {
 }
 
 void placeGrid(FileLayout& layout, const NiftiHeader& header) {
-    const int axes = std::min(header.dim(0), 3);
+    const int axes = static_cast<int>(std::min<std::int64_t>(header.dim(0), 3));
     const double millimetres = millimetresIn(header);
     for (int a = 1; a <= axes; ++a) {
         layout.spacing[a - 1] = header.pixdim(a);
@@ -260,11 +324,11 @@ std::optional<StepTimes> timesIn(const NiftiHeader& header) {
 
 FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const JobControl& job) {
     const std::string& path = source.path;
-    const std::uint64_t fileBytes = readableFileBytes(path);
+    readableFileBytes(path);
     const NiftiHeader header(path);
     const NiftiType type = typeIn(header);
     FileLayout layout;
-    layout.dataPath = path;
+    layout.dataPath = dataPathOf(header);
     layout.type = type.type;
     layout.bigEndian = header.isBigEndian();
     layout.axes = axesIn(header, type);
@@ -275,22 +339,33 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
     layout.scaling = scalingIn(header, type);
     valuesIn(layout, path); // throws where they are too many to count
     placeGrid(layout, header);
-    const float offset = header.voxOffset();
-    if (!(offset >= 0) || offset > 1e9f)
+    const double offset = header.voxOffset();
+    if (!(offset >= 0) || offset > 1e9)
         header.fail("the header's vox_offset cannot be where the data begin", "correct vox_offset in the header");
     layout.times = timesIn(header);
     if (!step) return layout;
-    const std::uint64_t start = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), kHeaderBytes);
-    const bool compressed = fileHead(path, 2) == "\x1f\x8b";
+    // Four bytes about extensions follow the header of a single file: data cannot begin before, and do so there where
+    // nothing is said.
+    auto start = static_cast<std::uint64_t>(offset);
+    if (!header.isPair()) start = start == 0 ? header.bytes() + 4 : std::max<std::uint64_t>(start, header.bytes());
+    const bool compressed = isGzip(layout.dataPath);
     layout.encoding = compressed ? Encoding::Deflate : Encoding::Raw;
     (compressed ? layout.skip : layout.start) = start;
+    const std::uint64_t fileBytes = dataFileBytes(layout.dataPath, path);
     requireData(layout, fileBytes - std::min(layout.start, fileBytes), valuesUpTo(layout, *step),
                 "check dim and datatype in the header, or copy the file again", job);
     return layout;
 }
 
+std::vector<std::string> dataFiles(const std::string& path) {
+    const NiftiHeader header(path);
+    return header.isPair() ? std::vector<std::string>{dataPathOf(header)} : std::vector<std::string>{};
+}
+
 } // namespace
 
-VolumeFormat niftiFormat() { return {"NIfTI", {".nii", ".nii.gz"}, describeLayout<layoutOf>, readLayout<layoutOf>}; }
+VolumeFormat niftiFormat() {
+    return {"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz"}, describeLayout<layoutOf>, readLayout<layoutOf>, dataFiles};
+}
 
 } // namespace pellucid
