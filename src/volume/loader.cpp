@@ -17,8 +17,8 @@ namespace {
 constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
-    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
-                                                    pvdFormat()};
+    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(),
+                                                    vtiFormat(),  pvtiFormat(),      pvdFormat()};
     return kFormats;
 }
 

@@ -66,12 +66,25 @@ std::vector<int> selected(int count, const std::optional<FrameRange>& range, con
     return frames;
 }
 
+/// Leaves out the images that are called after a file of pieces beside them: "a_0.vti" beside "a.pvti".
+void dropPieces(std::map<std::string, std::vector<std::string>>& bySuffix) {
+    const auto wholes = bySuffix.find(".pvti"), images = bySuffix.find(".vti");
+    if (wholes == bySuffix.end() || images == bySuffix.end()) return;
+    std::erase_if(images->second, [&](const std::string& image) {
+        return std::ranges::any_of(wholes->second, [&](const std::string& whole) {
+            return fileName(image).starts_with(fs::path(whole).stem().string());
+        });
+    });
+    if (images->second.empty()) bySuffix.erase(images);
+}
+
 /// Those of the most frequent suffix that volumes have (any suffix, where data are headerless).
 std::vector<std::string> ofOneSuffix(std::vector<std::string> paths, bool anySuffix,
                                      std::vector<std::string>& notices) {
     std::map<std::string, std::vector<std::string>> bySuffix;
     for (std::string& path : paths)
         if (anySuffix || hasVolumeSuffix(path)) bySuffix[volumeSuffix(path)].push_back(std::move(path));
+    if (!anySuffix) dropPieces(bySuffix);
     if (bySuffix.empty()) return {};
     // A collection names the files beside it, and their times.
     auto chosen = bySuffix.find(".pvd");

@@ -149,6 +149,99 @@ TEST_CASE("each rank reads its block of a file, and a broken file is an error of
     CHECK_THROWS_AS(onRanks(3, [&](Communicator& ranks) { loadOnRanks(ranks, source, layout); }), FileError);
 }
 
+namespace {
+
+/// A .pvti of 2 × 2 × 2 pieces that share planes, each a .vti of its own, and one .vti of the same. The value of a
+/// point is its number, in a circle.
+struct PiecesAndWhole {
+    TempFolder folder;
+    std::string pieces, whole;
+};
+
+std::string valuesAsText(const Int3& lo, const Int3& hi, const Int3& dims) {
+    std::string text;
+    for (int k = lo.z; k <= hi.z; ++k)
+        for (int j = lo.y; j <= hi.y; ++j)
+            for (int i = lo.x; i <= hi.x; ++i) text += std::to_string(voxelIndex(dims, i, j, k) * 7919 % 20011) + " ";
+    return text;
+}
+
+void writePieces(PiecesAndWhole& files, const Int3& dims) {
+    const auto image = [&](const std::string& name, const Int3& lo, const Int3& hi) {
+        std::string extent;
+        for (int a = 0; a < 3; ++a) extent += std::to_string(lo[a]) + " " + std::to_string(hi[a]) + " ";
+        files.folder.write(name,
+                           "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"" + extent + "\"><Piece Extent=\"" +
+                               extent + "\"><PointData><DataArray type=\"Int16\" Name=\"v\" format=\"ascii\">" +
+                               valuesAsText(lo, hi, dims) + "</DataArray></PointData></Piece></ImageData></VTKFile>");
+        return extent;
+    };
+    std::string text = "<VTKFile type=\"PImageData\"><PImageData WholeExtent=\"" +
+                       image("whole.vti", Int3(0), dims - 1) +
+                       "\"><PPointData><PDataArray type=\"Int16\" Name=\"v\"/></PPointData>";
+    for (int n = 0; n < 8; ++n) {
+        Int3 lo(0), hi = dims - 1;
+        for (int a = 0; a < 3; ++a) ((n >> a & 1) == 0 ? hi : lo)[a] = dims[a] / 3;
+        const std::string name = "piece" + std::to_string(n) + ".vti";
+        text += "<Piece Extent=\"" + image(name, lo, hi) + "\" Source=\"" + name + "\"/>";
+    }
+    files.pieces = files.folder.write("a.pvti", text + "</PImageData></VTKFile>");
+    files.whole = files.folder.path("whole.vti");
+}
+
+} // namespace
+
+TEST_CASE("an image in pieces lies on ranks as the same image in one file", "[ranks]") {
+    const Int3 dims(26, 24, 22);
+    PiecesAndWhole files;
+    writePieces(files, dims);
+    VolumeSource source;
+    source.path = files.whole;
+    const Volume whole = loadHere(source);
+    const Histogram histogram = makeHistogram(whole);
+    source.path = files.pieces;
+    for (const int count : {2, 3, 4}) {
+        CAPTURE(count);
+        std::vector<int> voxels(static_cast<std::size_t>(count)), figures = voxels, parts = voxels;
+        onRanks(count, [&](Communicator& ranks) {
+            const auto rank = static_cast<std::size_t>(ranks.rank());
+            RankLayout layout{.smallest = 1};
+            const Volume v = loadOnRanks(ranks, source, layout);
+            const Histogram counts = makeHistogram(v);
+            figures[rank] = v.dataRange() == whole.dataRange() && v.dims() == dims &&
+                            v.geometry().origin == whole.geometry().origin && counts.counts == histogram.counts &&
+                            counts.codes == histogram.codes;
+            const VoxelRegion stored = v.elsewhere()->stored();
+            parts[rank] = voxelCount(stored.hi - stored.lo) < whole.size();
+            bool same = v.here() != nullptr;
+            for (int k = stored.lo.z; same && k < stored.hi.z; ++k)
+                for (int j = stored.lo.y; j < stored.hi.y; ++j)
+                    for (int i = stored.lo.x; i < stored.hi.x; ++i) {
+                        const Int3 at = Int3(i, j, k) - stored.lo;
+                        same &= v.here()->value(voxelIndex(v.here()->dims(), at.x, at.y, at.z)) ==
+                                whole.value(voxelIndex(dims, i, j, k));
+                    }
+            voxels[rank] = same;
+        });
+        const std::vector<int> all(static_cast<std::size_t>(count), 1);
+        CHECK(voxels == all);
+        CHECK(figures == all);
+        CHECK(parts == all);
+    }
+    // The last piece is missing: the rank that needs it says so, and all throw.
+    std::filesystem::remove(files.folder.path("piece7.vti"));
+    std::array<int, 2> failed{};
+    onRanks(2, [&](Communicator& ranks) {
+        try {
+            RankLayout layout{.smallest = 1};
+            loadOnRanks(ranks, source, layout);
+        } catch (const FileError& e) {
+            failed[static_cast<std::size_t>(ranks.rank())] = e.where() == files.folder.path("piece7.vti");
+        }
+    });
+    CHECK(failed == std::array<int, 2>{1, 1});
+}
+
 TEST_CASE("where one rank cannot read its block all say so, and stay in step", "[ranks]") {
     // Noise packs badly: of the first two thirds of the file rank 0 finds its half of the slices.
     std::mt19937 random(7);

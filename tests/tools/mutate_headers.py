@@ -64,6 +64,8 @@ XML_LINES = [b"<!-- ", b"-->", b"<![CDATA[", b"]]>", b"<?x", b"<a>", b"</a>", b"
              b"<AppendedData encoding=\"base64\">_AAAA", b"</VTKFile>", b"<DataArray type=\"UInt8\" format=\"ascii\">1 2",
              b"<DataArray type=\"Float32\" Name=\"TimeValue\" format=\"appended\" offset=\"9223372036854775807\"/>",
              b"<DataSet timestep=\"nan\" file=\"step.vti\"/>", b"<DataSet timestep=\"7\" file=\"../none.vti\"/>",
+             b"<Piece Extent=\"0 1 0 2 0 1\" Source=\"step.vti\"/>", b"<Piece Extent=\"0 1 0 2 0 3\" Source=\"../none.vti\"/>",
+             b"<Piece Source=\"pipe\"/>", b"<Piece Extent=\"0 1 0 2 3 4\">", b"<Piece Extent=\"5 -5 0 2 0 3\">",
              b"<DataSet file=\"pipe\"/>", b"<DataSet timestep=\"8\" file=\"data.raw\"/>", b"&amp;&#0;&#99999;&x", b"\0"]
 
 
@@ -219,6 +221,14 @@ def pvd_seeds():
                  b"</Collection>\n</VTKFile>\n")]
 
 
+def pvti_seeds():
+    return [Seed(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PImageData\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+                 b"<PImageData WholeExtent=\"0 1 0 2 0 3\" GhostLevel=\"0\" Origin=\"5 6 7\" Spacing=\"1 2 3\">\n"
+                 b"<PPointData Scalars=\"density\">\n<PDataArray type=\"Int32\" Name=\"density\" NumberOfComponents=\"1\"/>\n"
+                 b"</PPointData>\n<Piece Extent=\"0 1 0 2 0 1\" Source=\"step.vti\"/>\n"
+                 b"<Piece Extent=\"0 1 0 2 1 3\" Source=\"step.vti\"/>\n</PImageData>\n</VTKFile>\n")]
+
+
 # suffix: seeds, lines to insert (None: a binary header)
 FORMATS = {
     "nrrd": (".nrrd", nrrd_seeds, NRRD_LINES),
@@ -228,6 +238,7 @@ FORMATS = {
     "nii": (".nii", nifti_seeds, None),
     "nii.gz": (".nii.gz", packed_nifti_seeds, None),
     "vti": (".vti", vti_seeds, XML_LINES),
+    "pvti": (".pvti", pvti_seeds, XML_LINES),
     "pvd": (".pvd", pvd_seeds, XML_LINES),
 }
 

@@ -101,6 +101,18 @@ inline std::vector<PackedFile> packedFiles(int side) {
             add(std::string("VTK zlib, ") + how + (block == one.size() ? ", one block" : ", blocks"), ".vti",
                 file.substr(0, begin), packed, 1, file.substr(begin + packed.size()));
         }
+    // Halves that share a layer.
+    const Style style{Place::Raw, true, false, false, std::size_t{1} << 12};
+    const std::size_t half = static_cast<std::size_t>(side) / 2, layer = one.size() / static_cast<std::size_t>(side);
+    const std::string across = "0 " + last + " 0 " + last + " ", middle = std::to_string(half);
+    const std::string low = one.substr(0, layer * (half + 1)), high = one.substr(layer * half);
+    const std::string pieces = vtiOfPieces(style,
+                                           {{across + "0 " + middle, {{"type=\"Int16\" Name=\"a\"", "", low}}},
+                                            {across + middle + " " + last, {{"type=\"Int16\" Name=\"a\"", "", high}}}},
+                                           "", "WholeExtent=\"" + extent + "\"");
+    const std::string packed = stored(style, low) + stored(style, high);
+    const std::size_t begin = pieces.find(packed);
+    add("VTK zlib, pieces", ".vti", pieces.substr(0, begin), packed, 1, pieces.substr(begin + packed.size()));
     return files;
 }
 

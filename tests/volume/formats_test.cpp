@@ -757,8 +757,8 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 }
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
-    CHECK(volumeFilePatterns() ==
-          std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz", "*.vti", "*.pvd"});
+    CHECK(volumeFilePatterns() == std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz",
+                                                           "*.vti", "*.pvti", "*.pvd"});
 }
 
 TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {

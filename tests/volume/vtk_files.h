@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volume_files.h"
@@ -69,36 +70,65 @@ struct Array {
     std::string ascii, data;
 };
 
-/// A file of these arrays.
-inline std::string vti(const Style& style, const std::vector<Array>& arrays, const std::string& pointData = "",
-                       const std::string& image = "WholeExtent=\"0 1 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"1 1 1\"",
-                       const std::string& extent = "0 1 0 2 0 0") {
+/// A part of an image, "0 1 0 2 0 0", and its arrays.
+struct Piece {
+    std::string extent;
+    std::vector<Array> arrays;
+};
+
+/// A file of these pieces.
+inline std::string vtiOfPieces(const Style& style, const std::vector<Piece>& pieces, const std::string& pointData,
+                               const std::string& image) {
     std::string text =
         "<?xml version=\"1.0\"?>\n<!-- <VTKFile type=\"Other\"> -->\n<VTKFile type=\"ImageData\" version=\"1.0\"";
     text += std::string(" byte_order=\"") + (style.bigEndian ? "BigEndian" : "LittleEndian") + "\"";
     if (style.wide) text += " header_type=\"UInt64\"";
     if (style.compressed) text += " compressor=\"vtkZLibDataCompressor\"";
-    text += ">\n <ImageData " + image + ">\n  <Piece Extent=\"" + extent + "\">\n   <PointData" + pointData + ">\n";
+    text += ">\n <ImageData " + image + ">\n";
     std::string appended;
-    for (const Array& array : arrays) {
-        text += "    <DataArray " + array.attributes;
-        switch (style.place) {
-        case Style::Place::Ascii:
-            text += " format=\"ascii\">" + array.ascii + "</DataArray>\n";
-            break;
-        case Style::Place::Inline:
-            text += " format=\"binary\">\n  " + stored(style, array.data) + "\n</DataArray>\n";
-            break;
-        default:
-            text += " format=\"appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
-            appended += stored(style, array.data);
+    for (const Piece& piece : pieces) {
+        text += "  <Piece Extent=\"" + piece.extent + "\">\n   <PointData" + pointData + ">\n";
+        for (const Array& array : piece.arrays) {
+            text += "    <DataArray " + array.attributes;
+            switch (style.place) {
+            case Style::Place::Ascii:
+                text += " format=\"ascii\">" + array.ascii + "</DataArray>\n";
+                break;
+            case Style::Place::Inline:
+                text += " format=\"binary\">\n  " + stored(style, array.data) + "\n</DataArray>\n";
+                break;
+            default:
+                text += " format=\"appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
+                appended += stored(style, array.data);
+            }
         }
+        text += "   </PointData>\n   <CellData></CellData>\n  </Piece>\n";
     }
-    text += "   </PointData>\n   <CellData></CellData>\n  </Piece>\n </ImageData>\n";
+    text += " </ImageData>\n";
     if (!appended.empty())
         text += std::string(" <AppendedData encoding=\"") + (style.place == Style::Place::Raw ? "raw" : "base64") +
                 "\">\n  _" + appended + "\n </AppendedData>\n";
     return text + "</VTKFile>\n";
+}
+
+/// A file of these arrays.
+inline std::string vti(const Style& style, const std::vector<Array>& arrays, const std::string& pointData = "",
+                       const std::string& image = "WholeExtent=\"0 1 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"1 1 1\"",
+                       const std::string& extent = "0 1 0 2 0 0") {
+    return vtiOfPieces(style, {{extent, arrays}}, pointData, image);
+}
+
+/// A file whose pieces, given by extent and name, are files of their own. `arrays`: the attributes of each.
+inline std::string pvti(const std::string& image, const std::vector<std::string>& arrays,
+                        const std::vector<std::pair<std::string, std::string>>& pieces,
+                        const std::string& pointData = "") {
+    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PImageData\" version=\"1.0\">\n <PImageData " + image +
+                       " GhostLevel=\"0\">\n  <PPointData" + pointData + ">\n";
+    for (const std::string& array : arrays) text += "   <PDataArray " + array + "/>\n";
+    text += "  </PPointData>\n";
+    for (const auto& [extent, source] : pieces)
+        text += "  <Piece Extent=\"" + extent + "\" Source=\"" + source + "\"/>\n";
+    return text + " </PImageData>\n</VTKFile>\n";
 }
 
 } // namespace pellucid::test

@@ -145,8 +145,9 @@ TEST_CASE("VTK files that are something else are refused in words", "[vtk][bad-i
     CHECK_THAT(changed("\"ascii\"", "\"verse\""), Contains("verse"));
     CHECK_THAT(changed("format=\"ascii\"", "format=\"appended\" offset=\"0\""), Contains("no appended data"));
     CHECK_THAT(changed("format=\"ascii\"", "format=\"appended\" offset=\"-1\""), Contains("negative"));
-    CHECK_THAT(changed("<Piece Extent=\"0 1 0 2 0 0\">", "<Piece Extent=\"0 1 0 1 0 0\">"), Contains("not the whole"));
-    CHECK_THAT(changed("  <Piece", "<Piece/>  <Piece"), Contains("several pieces"));
+    CHECK_THAT(changed("<Piece Extent=\"0 1 0 2 0 0\">", "<Piece Extent=\"0 1 0 1 0 0\">"),
+               Contains("no piece has the point 0 2 0 of the extent 0 1 0 2 0 0"));
+    CHECK_THAT(changed("  <Piece", "<Piece/>  <Piece"), Contains("piece 1 of 2 has no array 'a'"));
     CHECK_THAT(changed("0 1 0 2 0 0", "0 1 0 2 0"), Contains("six whole numbers"));
     CHECK_THAT(changed("Spacing=\"1 1 1\"", "Spacing=\"1 0 1\""),
                Contains("spacing of axis 1 is 0, it must be positive"));

@@ -43,7 +43,8 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     m_command = app.get_name();
     app.add_option_function<std::string>(
            "VOLUME", [this](const std::string& text) { path = text; },
-           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVD) or (with --raw) headerless file, or sample:NAME; a series: "
+           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVTI, PVD) or (with --raw) headerless file, or sample:NAME; a "
+           "series: "
            "a file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
            "--session")
         ->type_name("");

@@ -37,8 +37,9 @@ Volume readLayout(const VolumeSource& source, const JobControl& job) {
 VolumeFormat nrrdFormat();
 VolumeFormat metaImageFormat();
 VolumeFormat niftiFormat();
-VolumeFormat vtiFormat(); ///< vtk_image.cpp
-VolumeFormat pvdFormat();
+VolumeFormat vtiFormat();  ///< vtk_image.cpp
+VolumeFormat pvtiFormat(); ///< vtk_image.cpp
+VolumeFormat pvdFormat();  ///< vtk_collection.cpp
 
 /// Time steps of source.path as *source.raw says, see contentsOf(). Throws FileError.
 int rawSteps(const VolumeSource& source);

@@ -121,20 +121,20 @@ public:
 template <class T>
 class BinaryValues final : public Values {
 public:
-    BinaryValues(const FileLayout& layout, const JobControl& job)
-        : m_path(layout.dataPath),
-          m_swap(sizeof(T) > 1 && layout.bigEndian != (std::endian::native == std::endian::big)) {
-        if (layout.open)
-            m_bytes = layout.open(job);
-        else if (layout.encoding == Encoding::Deflate && layout.index)
-            m_bytes = layout.index->bytes(job);
-        else if (layout.encoding == Encoding::Deflate)
-            m_bytes = std::make_unique<InflatedBytes>(m_path, layout.start, layout.zlib, job);
-        else if (layout.encoding == Encoding::Hex)
-            m_bytes = std::make_unique<HexBytes>(m_path, layout.start, job);
+    BinaryValues(const StoredValues& stored, const JobControl& job)
+        : m_path(stored.dataPath),
+          m_swap(sizeof(T) > 1 && stored.bigEndian != (std::endian::native == std::endian::big)) {
+        if (stored.open)
+            m_bytes = stored.open(job);
+        else if (stored.encoding == Encoding::Deflate && stored.index)
+            m_bytes = stored.index->bytes(job);
+        else if (stored.encoding == Encoding::Deflate)
+            m_bytes = std::make_unique<InflatedBytes>(m_path, stored.start, stored.zlib, job);
+        else if (stored.encoding == Encoding::Hex)
+            m_bytes = std::make_unique<HexBytes>(m_path, stored.start, job);
         else
-            m_bytes = std::make_unique<FileBytes>(m_path, layout.start, job);
-        if (!m_bytes->skip(layout.skip)) failEarly(m_path, 0);
+            m_bytes = std::make_unique<FileBytes>(m_path, stored.start, job);
+        if (!m_bytes->skip(stored.skip)) failEarly(m_path, 0);
     }
     void read(char* to, std::size_t values) override {
         const std::size_t bytes = values * sizeof(T);
@@ -160,8 +160,8 @@ private:
 template <class T>
 class TextValues final : public Values {
 public:
-    TextValues(const FileLayout& layout, const JobControl& job)
-        : m_path(layout.dataPath), m_words(layout.dataPath, layout.start, job) {}
+    TextValues(const StoredValues& stored, const JobControl& job)
+        : m_path(stored.dataPath), m_words(stored.dataPath, stored.start, job) {}
     void read(char* to, std::size_t values) override {
         for (std::size_t i = 0; i < values; ++i) {
             const T value = next();
@@ -301,29 +301,127 @@ Collected collectPlain(Values& values, const Selection& selection, const JobCont
     return {std::move(kept), {0, -1}};
 }
 
-/// The same for an excerpt: one layer of it is in the making while the file goes by.
+template <class T>
+std::unique_ptr<Values> openValues(const StoredValues& stored, const JobControl& job) {
+    if (stored.encoding == Encoding::Text) return std::make_unique<TextValues<T>>(stored, job);
+    return std::make_unique<BinaryValues<T>>(stored, job);
+}
+
+/// Rows of a volume, which are asked for in the order of the file.
+template <class T>
+class Rows {
+public:
+    virtual ~Rows() = default;
+    /// The values of `count` voxels along x, from `first` on.
+    virtual void read(const Int3& first, int count, T* to) = 0;
+};
+
+template <class T>
+class StoredRows final : public Rows<T> {
+public:
+    StoredRows(const StoredValues& stored, const Selection& selection, const JobControl& job)
+        : m_values(openValues<T>(stored, job)), m_selection(selection), m_reader(*m_values, selection.stride[0]) {}
+    void read(const Int3& first, int count, T* to) override {
+        const auto& stride = m_selection.stride;
+        std::uint64_t start = m_selection.first;
+        for (int a = 0; a < 3; ++a) start += static_cast<std::uint64_t>(first[a]) * stride[static_cast<std::size_t>(a)];
+        m_reader.readLine(start, static_cast<std::uint64_t>(count), [&](const T* piece, std::uint64_t voxels) {
+            for (std::uint64_t v = 0; v < voxels; ++v) *to++ = piece[v * stride[0]];
+        });
+    }
+
+private:
+    std::unique_ptr<Values> m_values;
+    Selection m_selection;
+    VoxelReader<T> m_reader;
+};
+
+/// Of a volume in pieces. A piece is open from its first row to its last one, unless there are too many: then it is
+/// opened anew for each layer.
+template <class T>
+class PieceRows final : public Rows<T> {
+public:
+    /// `whole`: of the volume.
+    PieceRows(const std::vector<FilePiece>& pieces, const Selection& whole, const JobControl& job)
+        : m_whole(whole), m_job(job) {
+        for (const FilePiece& piece : pieces) m_pieces.push_back({&piece, nullptr});
+    }
+    void read(const Int3& first, int count, T* to) override {
+        if (first.z != m_layer) goToLayer(first.z);
+        for (Piece* piece : m_inLayer) {
+            const VoxelRegion& region = piece->file->region;
+            const int begin = std::max(first.x, region.lo.x), end = std::min(first.x + count, region.hi.x);
+            if (begin >= end || !hasRow(*piece, first.y)) continue;
+            if (!piece->rows) open(*piece, first.y);
+            piece->rows->read(Int3(begin, first.y, first.z) - piece->file->first, end - begin, to + (begin - first.x));
+        }
+    }
+
+private:
+    static constexpr std::size_t kMostOpen = 256; // a process may have 1024 files open
+    struct Piece {
+        const FilePiece* file;
+        std::unique_ptr<StoredRows<T>> rows; ///< null: it is not open
+    };
+
+    static bool hasRow(const Piece& piece, int y) {
+        return y >= piece.file->region.lo.y && y < piece.file->region.hi.y;
+    }
+    void goToLayer(int z) {
+        m_layer = z;
+        m_inLayer.clear();
+        for (Piece& piece : m_pieces) {
+            const bool isIn = z >= piece.file->region.lo.z && z < piece.file->region.hi.z;
+            if (isIn) m_inLayer.push_back(&piece);
+            if (!isIn) close(piece);
+        }
+    }
+    void open(Piece& piece, int y) {
+        for (std::size_t i = 0; m_open >= kMostOpen && i < m_inLayer.size(); ++i)
+            if (!hasRow(*m_inLayer[i], y)) close(*m_inLayer[i]);
+        Selection selection = m_whole; // its component, and how many there are
+        const Int3& dims = piece.file->dims;
+        selection.stride[0] = m_whole.components;
+        selection.stride[1] = selection.stride[0] * static_cast<std::uint64_t>(dims.x);
+        selection.stride[2] = selection.stride[1] * static_cast<std::uint64_t>(dims.y);
+        piece.rows = std::make_unique<StoredRows<T>>(piece.file->values, selection, m_job);
+        ++m_open;
+    }
+    void close(Piece& piece) {
+        m_open -= piece.rows ? 1u : 0u;
+        piece.rows.reset();
+    }
+
+    const Selection m_whole;
+    const JobControl& m_job;
+    std::vector<Piece> m_pieces;
+    std::vector<Piece*> m_inLayer; // those with voxels in m_layer
+    int m_layer = -1;
+    std::size_t m_open = 0;
+};
+
+template <class T>
+std::unique_ptr<Rows<T>> openRows(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+    if (layout.pieces.empty()) return std::make_unique<StoredRows<T>>(layout, selection, job);
+    return std::make_unique<PieceRows<T>>(layout.pieces, selection, job);
+}
+
+/// collect() for an excerpt, and for pieces: one layer of it is in the making while the file goes by.
 template <class T, class Kept, class Convert>
-Collected collectExcerpt(Values& values, const Selection& selection, const ExcerptPlan& plan,
-                         std::optional<double> missing, const JobControl& job, const Convert& convert) {
+Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<double> missing, const JobControl& job,
+                         const Convert& convert) {
     const Int3 lo = plan.region.lo, size = plan.region.hi - lo;
     // Padded, so that codes of 8 bits need no copy.
     std::vector<Kept> kept(voxelCount(plan.dims) + SampleArray<Kept>::kPadding), row(static_cast<std::size_t>(size.x));
+    std::vector<T> values(row.size());
     const bool asItIs = plan.factors == Int3(1);
     const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
     LayerMeans<Kept> means({size.x, size.y}, plan.factors, missing);
-    VoxelReader<T> reader(values, selection.stride[0]);
     ReadProgress progress(job, voxelCount(size));
-    const auto start = [&](int j, int k) {
-        return selection.first + static_cast<std::uint64_t>(lo.x) * selection.stride[0] +
-               static_cast<std::uint64_t>(lo.y + j) * selection.stride[1] +
-               static_cast<std::uint64_t>(lo.z + k) * selection.stride[2];
-    };
     for (int k = 0; k < size.z; ++k) {
         for (int j = 0; j < size.y; ++j) {
-            auto to = row.begin();
-            reader.readLine(start(j, k), row.size(), [&](const T* piece, std::uint64_t voxels) {
-                for (std::uint64_t v = 0; v < voxels; ++v) *to++ = convert(piece[v * selection.stride[0]]);
-            });
+            rows.read(lo + Int3(0, j, k), size.x, values.data());
+            std::ranges::transform(values, row.begin(), convert);
             if (asItIs)
                 std::copy(row.begin(), row.end(),
                           kept.data() + layer * static_cast<std::size_t>(k) + row.size() * static_cast<std::size_t>(j));
@@ -348,8 +446,8 @@ bool isGapless(const Selection& selection) {
 bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
     const auto bytes = bytesPerValue(layout.type);
     const bool native = bytes == 1 || layout.bigEndian == (std::endian::native == std::endian::big);
-    return layout.encoding == Encoding::Raw && !layout.open && native && !layout.scaling && isGapless(selection) &&
-           (layout.start + selection.first * bytes) % bytes == 0;
+    return layout.encoding == Encoding::Raw && !layout.open && layout.pieces.empty() && native && !layout.scaling &&
+           isGapless(selection) && (layout.start + selection.first * bytes) % bytes == 0;
 }
 
 /// The samples as they lie in a large file; empty where that cannot be.
@@ -381,16 +479,14 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
         const std::uint64_t bytes = voxelCount(plan.dims) * sizeof(Kept);
         requireMemory(source.then, source.path, plan.dims, sampleTypeOf<Kept>(), bytes, bytes);
     }
-    std::unique_ptr<Values> values;
-    if (layout.encoding == Encoding::Text)
-        values = std::make_unique<TextValues<T>>(layout, job);
-    else
-        values = std::make_unique<BinaryValues<T>>(layout, job);
+    const bool byRows = !plan.isWhole() || !layout.pieces.empty();
     if constexpr (std::is_same_v<T, Kept>)
-        if (plan.isWhole() && !layout.scaling && isGapless(selection)) return collectPlain<T>(*values, selection, job);
+        if (!byRows && !layout.scaling && isGapless(selection))
+            return collectPlain<T>(*openValues<T>(layout, job), selection, job);
     const auto read = [&](const auto& convert) {
-        return plan.isWhole() ? collect<T, Kept>(*values, selection, job, convert)
-                              : collectExcerpt<T, Kept>(*values, selection, plan, source.missing, job, convert);
+        return byRows
+                   ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, job), plan, source.missing, job, convert)
+                   : collect<T, Kept>(*openValues<T>(layout, job), selection, job, convert);
     };
     if (!layout.scaling) return read([](T value) { return static_cast<Kept>(value); });
     return read([scaling = *layout.scaling](T value) {

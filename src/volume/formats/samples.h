@@ -39,15 +39,30 @@ struct StepTimes {
 
 class InflateIndex;
 
-/// What a header says.
-struct FileLayout {
-    std::string dataPath; ///< the file that holds the samples
+/// Where values are, and how they are stored.
+struct StoredValues {
+    std::string dataPath; ///< the file that holds them
     Encoding encoding = Encoding::Raw;
     bool zlib = false;       ///< Deflate: a zlib stream may stand there, too
     std::uint64_t start = 0; ///< the encoded data begin here, bytes of the file
     std::uint64_t skip = 0;  ///< the first value begins here, bytes of the decoded data (Deflate only)
     ValueType type = ValueType::U8;
-    bool bigEndian = false;          ///< no matter for Text
+    bool bigEndian = false; ///< no matter for Text
+    /// Where given: the bytes of the values, in place of `encoding`, `start` and `skip` (raw to those who ask).
+    std::function<std::unique_ptr<ByteSource>(const JobControl&)> open;
+    std::shared_ptr<InflateIndex> index; ///< of Deflate with several steps: where to read on
+};
+
+/// A box of a volume that is stored by itself: x fastest, all components of a voxel beside each other.
+struct FilePiece {
+    VoxelRegion region;  ///< the voxels of the volume that are taken from it, all of which it has
+    Int3 first{0, 0, 0}; ///< the voxel of the volume that its values begin with; may lie outside
+    Int3 dims{1, 1, 1};  ///< voxels that it has
+    StoredValues values;
+};
+
+/// What a header says.
+struct FileLayout : StoredValues {
     std::vector<FileAxis> axes;      ///< fastest first; 1 to 17
     std::vector<int> componentOrder; ///< component n is entry componentOrder[n] of its axis; empty: entry n
     Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
@@ -55,11 +70,11 @@ struct FileLayout {
     WorldAxes worldAxes = WorldAxes::File;
     std::optional<ValueScaling> scaling;
     std::optional<StepTimes> times; ///< of steps along one axis
-    /// Where given: the bytes of the values, in place of `encoding`, `start` and `skip` (raw to those who ask).
-    std::function<std::unique_ptr<ByteSource>(const JobControl&)> open;
-    std::shared_ptr<InflateIndex> index; ///< of Deflate with several steps: where to read on
-    std::string array;                   ///< name of the array that this is, where the file names its arrays
-    std::vector<std::string> arrays;     ///< of these, all names
+    /// Where given: the values are in these, which together have all voxels that are asked for; of a voxel that several
+    /// have, the last one's. They have the type of the layout; its axes are one of components, or none, and x, y, z.
+    std::vector<FilePiece> pieces;
+    std::string array;               ///< name of the array that this is, where the file names its arrays
+    std::vector<std::string> arrays; ///< of these, all names
     std::vector<std::string> notices;
 };
 

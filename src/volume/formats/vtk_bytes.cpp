@@ -185,6 +185,24 @@ std::size_t ZlibBlocks::read(char* to, std::size_t count) {
     return m_failed && done == count && count > 0 ? count - 1 : done;
 }
 
+bool ZlibBlocks::skip(std::uint64_t count) {
+    while (count > 0 && !m_failed && m_block < m_blocks.size()) {
+        const bool isAtBegin = m_unpackedLeft == m_blocks[m_block].unpacked;
+        if (isAtBegin && count >= m_unpackedLeft) {
+            count -= m_unpackedLeft;
+            m_failed = !m_from->skip(m_packedLeft);
+            if (++m_block < m_blocks.size()) m_failed = !beginBlock() || m_failed;
+        } else if (m_unpackedLeft == 0) {
+            m_failed = !endBlock();
+        } else {
+            const std::uint64_t piece = std::min(count, m_unpackedLeft);
+            if (!ByteSource::skip(piece)) return false;
+            count -= piece;
+        }
+    }
+    return count == 0;
+}
+
 std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job) {
     const std::uint64_t stored = storedFrom(data);
     const char* toDo = "check the extent and the type of the array, or copy the file again";

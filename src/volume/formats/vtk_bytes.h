@@ -35,6 +35,8 @@ public:
     ZlibBlocks& operator=(const ZlibBlocks&) = delete;
     /// Fewer bytes where a block is damaged or yields another number of bytes than it should.
     std::size_t read(char* to, std::size_t count) override;
+    /// Does not unpack the blocks that it leaves out as a whole, nor look whether they are damaged.
+    bool skip(std::uint64_t count) override;
 
 private:
     bool beginBlock();
