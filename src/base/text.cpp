@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <iterator>
 #include <span>
+#include <type_traits>
 
 namespace pellucid {
 
@@ -58,11 +59,23 @@ std::string lowerCase(std::string_view text) {
 
 namespace {
 
+/// Of a number beyond the range of its type: whether it is too small, rather than too large.
+bool isTiny(std::string_view text) {
+    const std::size_t exponent = text.find_first_of("eE");
+    if (exponent != std::string_view::npos) return text.substr(exponent + 1).starts_with('-');
+    return text.substr(0, text.find('.')).find_first_of("123456789") == std::string_view::npos;
+}
+
 template <class Number>
 bool parseWhole(std::string_view text, Number& value) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} && end == text.data() + text.size();
+    if (end != text.data() + text.size()) return false;
+    if (std::is_floating_point_v<Number> && error == std::errc::result_out_of_range && isTiny(text)) {
+        value = 0; // nearer to 0 than any number of the type
+        return true;
+    }
+    return error == std::errc{};
 }
 
 } // namespace

@@ -447,8 +447,8 @@ TEST_CASE("headers that leave something out or contradict themselves are refused
     nifti.magic = "ni1";
     CHECK_THAT(errorOf(folder.write("d.nii", nifti.header() + std::string(24, 'x'))), Contains("end in .hdr"));
     const std::string header = folder.write("d.hdr", nifti.header());
-    CHECK_THAT(errorOf(header), Contains("no file d.img beside it"));
-    folder.write("d.img", std::string(23, 'x'));
+    CHECK_THAT(errorOf(header), Contains("the data, d.img, is not beside this header"));
+    folder.write("d.img", std::string(352 + 23, 'x')); // vox_offset counts in that file
     CHECK_THAT(errorOf(header), Contains("23 of 24 bytes"));
 }
 

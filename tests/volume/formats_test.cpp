@@ -758,7 +758,7 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
     CHECK(volumeFilePatterns() == std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz",
-                                                           "*.vti", "*.pvti", "*.pvd"});
+                                                           "*.hdr", "*.hdr.gz", "*.vti", "*.pvti", "*.pvd"});
 }
 
 TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {
@@ -781,4 +781,88 @@ TEST_CASE("the files of a volume are the one named and the one with its data", "
     CHECK(files("missing.nrrd") == Paths{"missing.nrrd"});
     CHECK(files("a.unknown") == Paths{"a.unknown"});
     CHECK(files("sample:knee").empty());
+}
+
+TEST_CASE("headers say in which unit lengths are", "[formats]") {
+    const TempFolder folder;
+    const auto nrrd = [&](const std::string& units) {
+        return folder.write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
+                                      "space: left-posterior-superior\nspace directions: (2,0,0) (0,2,0) (0,0,4)\n"
+                                      "space origin: (1,0,3)\nspace units: " +
+                                          units + "\n\n01234567");
+    };
+    CHECK(load(nrrd(R"("cm" "cm" "cm")")).geometry().spacing == Vec3(20, 20, 40));
+    CHECK(load(nrrd("um um um")).geometry().origin == Vec3(1e-3, 0, 3e-3)); // without quotes
+    CHECK_THROWS_WITH(load(nrrd(R"("mm" "mm" "cm")")), Contains("different units, 'mm' and 'cm'"));
+    const auto mha = [&](const std::string& fields) {
+        return folder.write("a.mha", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                                     "ElementSpacing = 2 2 4\nOffset = 1 0 3\n" +
+                                         fields + "ElementDataFile = LOCAL\n01234567");
+    };
+    const Volume micro = load(mha("AnatomicalOrientation = RAI\nDistanceUnits = um\n"));
+    CHECK(micro.geometry().spacing == Vec3(2e-3, 2e-3, 4e-3));
+    CHECK(micro.geometry().origin == Vec3(1e-3, 0, 3e-3));
+    CHECK(load(mha("DistanceUnits = um\n")).geometry().spacing == Vec3(2, 2, 4)); // no patient: units of the file
+    CHECK_THROWS_WITH(load(mha("AnatomicalOrientation = RAI\nDistanceUnits = inch\n")), Contains("inch"));
+}
+
+TEST_CASE("names of data files may look like lists", "[formats]") {
+    const TempFolder folder;
+    for (const std::string name : {"LISTEN.raw", "50%.raw", "LIST", "a %d 1"}) {
+        INFO(name);
+        folder.write(name, "01234567");
+        const std::string header = folder.write(
+            "a.nhdr", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: " + name + "\n");
+        CHECK(load(header).dataRange() == ValueRange{'0', '7'});
+    }
+}
+
+TEST_CASE("a measurement frame is told of where a voxel has components", "[formats]") {
+    const TempFolder folder;
+    const auto notices = [&](const std::string& sizes, const std::string& frame) {
+        return load(folder.write("a.nrrd",
+                                 "NRRD0004\ntype: uint8\ndimension: 4\nsizes: " + sizes +
+                                     "\nkinds: vector domain domain domain\nencoding: raw\nspace dimension: 3\n"
+                                     "space directions: none (1,0,0) (0,1,0) (0,0,1)\nmeasurement frame: " +
+                                     frame + "\n\n01234567"))
+            .notices;
+    };
+    const auto tells = [](const std::vector<std::string>& all) {
+        return std::ranges::any_of(all, [](const std::string& n) { return n.find("measurement frame") != n.npos; });
+    };
+    CHECK(tells(notices("2 2 2 1", "(0,1,0) (1,0,0) (0,0,1)")));
+    CHECK_FALSE(tells(notices("2 2 2 1", "(1, 0, 0) (0,1,0)  (0,0,1)")));
+}
+
+TEST_CASE("text has whole numbers where samples are whole, and numbers near 0", "[formats]") {
+    const TempFolder folder;
+    const auto text = [&](const std::string& type, const std::string& data) {
+        return folder.write("a.nrrd", "NRRD0004\ntype: " + type + "\ndimension: 3\nsizes: 2 1 2\nencoding: ascii\n\n" +
+                                          data + "\n");
+    };
+    const Volume whole = load(text("uchar", "5 4\n3.0 1e2"));
+    CHECK(samplesOf<std::uint8_t>(whole) == std::vector<std::uint8_t>{5, 4, 3, 100});
+    CHECK_THROWS_WITH(load(text("uchar", "5 1.7 3 2")), Contains("'1.7' does not fit"));
+    const Volume tiny = load(text("double", "1e-400 -1E-400 0.5 1"));
+    CHECK(samplesOf<double>(tiny) == std::vector<double>{0, 0, 0.5, 1});
+    CHECK_THROWS_WITH(load(text("double", "1e400 1 2 3")), Contains("'1e400'"));
+}
+
+TEST_CASE("scaled values that floats do not hold are doubles, or refused", "[formats]") {
+    const TempFolder folder;
+    Nifti nifti;
+    nifti.dim = {3, 2, 1, 1, 1, 1, 1, 1};
+    nifti.slope = 3e38f;
+    const Volume wide = load(folder.write("a.nii", nifti.header() + std::string("\1\2", 2)));
+    CHECK(wide.sampleType() == SampleType::F64);
+    CHECK(wide.value(1) == Approx(6e38));
+    nifti.datatype = 16; // floats stay floats
+    nifti.bitpix = 32;
+    nifti.slope = 2;
+    const auto floats = [&](float second) {
+        return folder.write("b.nii", nifti.header() + bytesOf(std::vector<float>{1, second}));
+    };
+    CHECK(load(floats(4)).value(1) == 8);
+    CHECK(load(floats(std::numeric_limits<float>::infinity())).invalidCount() == 1);
+    CHECK_THROWS_WITH(load(floats(3e38f)), Contains("scaled as the header says"));
 }

@@ -58,7 +58,7 @@ struct Nifti {
     std::array<float, 12> sform{}; ///< row by row
 
     /// The same as a NIfTI-2 header of 544 bytes; its numbers are those of the other, only wider.
-    std::string header2(std::int64_t offset = 544, const std::string& mark = "n+2") const {
+    std::string header2(std::int64_t dataStart = 544, const std::string& mark = "n+2") const {
         std::string bytes(544, '\0');
         const auto put = [&](std::size_t offset, const auto& value) {
             std::memcpy(bytes.data() + offset, &value, sizeof value);
@@ -73,7 +73,7 @@ struct Nifti {
         put(14, bitpix);
         putAll(16, dim, std::int64_t{});
         putAll(104, pixdim, double{});
-        put(168, offset);
+        put(168, dataStart);
         put(176, static_cast<double>(slope));
         put(184, static_cast<double>(intercept));
         put(344, static_cast<std::int32_t>(qformCode));

@@ -108,6 +108,14 @@ WorldAxes worldAxesIn(const TextHeader& header) {
     return letters.size() >= 3 && letters.find_first_not_of("rlapsi") >= 3 ? WorldAxes::Patient : WorldAxes::File;
 }
 
+/// Millimetres of the header's unit of length; 1 where it names none. Throws FileError for one that is not known.
+double millimetresIn(const TextHeader& header) {
+    const std::string unit = lowerCase(header.get("DistanceUnits"));
+    static const std::map<std::string, double> kUnits{{"", 1}, {"?", 1}, {"um", 1e-3}, {"mm", 1}, {"cm", 10}};
+    if (const auto it = kUnits.find(unit); it != kUnits.end()) return it->second;
+    header.fail("the DistanceUnits " + inQuotes(header.get("DistanceUnits")) + " are not known", "write um, mm or cm");
+}
+
 bool isBigEndian(const TextHeader& header) {
     const char* const names[] = {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"};
     const bool isFirst = isTrue(header, names[0]), isSecond = isTrue(header, names[1]);
@@ -184,6 +192,10 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
         layout.origin[static_cast<int>(a)] = origin[a];
     layout.directions = directionsIn(header, sizes.size());
     layout.worldAxes = worldAxesIn(header);
+    if (layout.worldAxes == WorldAxes::Patient) {
+        layout.spacing *= millimetresIn(header);
+        layout.origin *= millimetresIn(header);
+    }
     layout.bigEndian = isBigEndian(header);
     layout.encoding = encodingIn(header);
     layout.zlib = true;

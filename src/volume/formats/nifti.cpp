@@ -68,7 +68,7 @@ public:
             fail(std::string("the header lacks the mark of NIfTI-") + version,
                  "convert an Analyze file to NIfTI first");
         if (m_form.version == 2 && std::memcmp(m_bytes.data() + m_form.magic + 4, "\r\n\032\n", 4) != 0)
-            fail("the line ends in the header's mark are others than NIfTI-2 has: the file was copied as text",
+            fail("the mark of NIfTI-2 in the header is damaged, as by copying the file as text",
                  "copy it again, as binary data");
     }
 
@@ -154,9 +154,9 @@ std::string dataPathOf(const NiftiHeader& header) {
     std::error_code ec;
     for (const std::string& path : {image, image + (upper ? ".GZ" : ".gz")})
         if (std::filesystem::is_regular_file(path, ec)) return path;
-    header.fail("the data of this header are not there: no file " + std::filesystem::path(image).filename().string() +
-                    " beside it",
-                "put the file there; both belong together");
+    header.fail("the file with the data, " + std::filesystem::path(image).filename().string() +
+                    ", is not beside this header",
+                "copy both into one folder");
 }
 
 struct NiftiType {

@@ -164,12 +164,27 @@ std::optional<Vec3> flipOfSpace(const TextHeader& header) {
     return {};
 }
 
-/// Millimetres of the header's unit of length; 1 where it names none that is known.
+/// The n-th of the texts in quotes of a field.
+std::string quotedWord(const std::string& text, std::size_t n) {
+    std::vector<std::string> parts; // outside and inside quotes, in turn
+    for (const auto part : std::views::split(text, '"')) parts.emplace_back(part.begin(), part.end());
+    return 2 * n + 2 < parts.size() ? trimmed(parts[2 * n + 1]).substr(0, 40) : std::string();
+}
+
+/// Millimetres of the header's unit of length; 1 where it names none that is known. Throws FileError where axes have
+/// different ones.
 double millimetresIn(const TextHeader& header) {
     const std::string units = lowerCase(header.get("spaceunits"));
-    const std::size_t begin = units.find_first_not_of("\" ");
-    if (begin == std::string::npos) return 1;
-    const std::string unit = units.substr(begin, units.find_first_of("\" ", begin) - begin);
+    const std::vector<std::string> words = splitWords(units);
+    const auto unitOf = [&](std::size_t axis) { // in quotes, as it should be, or not
+        return units.find('"') != std::string::npos ? quotedWord(units, axis)
+                                                    : (axis < words.size() ? words[axis] : std::string());
+    };
+    const std::string unit = unitOf(0);
+    for (const std::size_t axis : {1u, 2u})
+        if (const std::string other = unitOf(axis); !other.empty() && other != unit)
+            header.fail("the header measures axes in different units, " + inQuotes(unit) + " and " + inQuotes(other),
+                        "convert them, and correct space units");
     static const std::map<std::string, double> kUnits{{"m", 1e3}, {"cm", 10}, {"um", 1e-3}, {"µm", 1e-3}, {"nm", 1e-6}};
     const auto it = kUnits.find(unit);
     return it == kUnits.end() ? 1 : it->second;
@@ -266,19 +281,16 @@ void placeGrid(FileLayout& layout, const TextHeader& header) {
         spacing *= unit;
         requireSpacing(spacing, a, text, header.path());
     }
+    const bool hasComponents = std::ranges::any_of(layout.axes, [](const FileAxis& axis) { return axis.components; });
+    const std::string frame = joined(splitVectors(header.get("measurementframe")), " ");
+    if (hasComponents && !frame.empty() && frame != "(1,0,0) (0,1,0) (0,0,1)")
+        layout.notices.emplace_back("the header's measurement frame is not applied: components are shown as stored");
     const std::vector<std::string> origin = splitVectors(header.get("spaceorigin"));
     if (origin.empty() && directions.empty()) placeByMins(layout, fields, inSpace, header);
     if (origin.empty() || isNone(origin.front())) return;
     const std::vector<double> place = vectorIn(origin.front(), header);
     for (std::size_t c = 0; c < std::min(place.size(), inSpace.size()); ++c)
         layout.origin[static_cast<int>(c)] = flip[static_cast<int>(c)] * place[c] * unit;
-}
-
-/// The n-th of the texts in quotes of a field.
-std::string quotedWord(const std::string& text, std::size_t n) {
-    std::vector<std::string> parts; // outside and inside quotes, in turn
-    for (const auto part : std::views::split(text, '"')) parts.emplace_back(part.begin(), part.end());
-    return 2 * n + 2 < parts.size() ? trimmed(parts[2 * n + 1]).substr(0, 40) : std::string();
 }
 
 /// When the steps are, where they lie along one axis whose width the header gives.

@@ -38,11 +38,13 @@ auto withType(ValueType type, const Use& use) {
 /// 64-bit integers have no sample type of their own.
 template <class T>
 using KeptType = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, double, T>;
-/// Whether floats tell all scaled values of an integer type apart: their steps are no longer than those of the values.
+/// Whether floats have all scaled values of an integer type and tell them apart: their steps are no longer than those
+/// of the values.
 template <class T>
 bool floatsTellApart(const ValueScaling& scaling) {
     const double step = std::abs(scaling.slope), most = std::ldexp(step, 8 * sizeof(T)) + std::abs(scaling.intercept);
-    return most <= std::ldexp(step, std::numeric_limits<float>::digits);
+    return most <= std::ldexp(step, std::numeric_limits<float>::digits) &&
+           most <= static_cast<double>(std::numeric_limits<float>::max());
 }
 
 /// Calls use(Kept{}) with the type that values of T are kept in: their own, or scaled, since scaled integers are no
@@ -183,10 +185,11 @@ private:
             if (parseNumber(m_word, whole) && std::in_range<T>(whole)) return static_cast<T>(whole);
             // Bounds as powers of two, which a double holds exactly: [−2^(b−1), 2^(b−1)) or [0, 2^b).
             const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);
-            if (!parseNumber(m_word, value) || !(value >= (std::is_signed_v<T> ? -end : 0.0)) || value >= end)
+            const bool isWhole = parseNumber(m_word, value) && std::trunc(value) == value; // 3.0, 1e3
+            if (!isWhole || !(value >= (std::is_signed_v<T> ? -end : 0.0)) || value >= end)
                 throw FileError("the value " + inQuotes(m_word) + " does not fit the type of the samples", m_path,
                                 "correct the type in the header");
-            return static_cast<T>(value); // what lies behind the point is dropped
+            return static_cast<T>(value);
         } else {
             if (!parseNumber(m_word, value))
                 throw FileError("there is " + inQuotes(m_word) + " where a number belongs", m_path,
@@ -489,9 +492,17 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
                    : collect<T, Kept>(*openValues<T>(layout, job), selection, job, convert);
     };
     if (!layout.scaling) return read([](T value) { return static_cast<Kept>(value); });
-    return read([scaling = *layout.scaling](T value) {
-        return static_cast<Kept>(scaling.slope * static_cast<double>(value) + scaling.intercept);
+    bool isBeyond = false;
+    Collected scaled = read([scaling = *layout.scaling, &isBeyond](T value) {
+        const double exact = scaling.slope * static_cast<double>(value) + scaling.intercept;
+        isBeyond |=
+            std::isfinite(static_cast<double>(value)) && !(std::abs(exact) <= double{std::numeric_limits<Kept>::max()});
+        return isBeyond ? Kept{0} : static_cast<Kept>(exact);
     });
+    if (isBeyond)
+        throw FileError("some values, scaled as the header says, are larger than samples of this type can be",
+                        source.path, "correct the scaling in the header");
+    return scaled;
 }
 
 } // namespace
