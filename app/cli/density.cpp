@@ -1,6 +1,4 @@
 // `density`: pictures from faint to strong in which each feature keeps its share of attention.
-#include <algorithm>
-
 #include "commands.h"
 #include "optimize/answer/visibility_words.h"
 #include "optimize/objective.h"
@@ -10,6 +8,7 @@
 #include "prepare.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
+#include "results_json.h"
 #include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
 
@@ -64,11 +63,7 @@ std::string textOf(const DensityCurve& curve, const std::optional<DensityPoint>&
 }
 
 Json jsonOf(const DensityPoint& point) {
-    return {{"coverage", point.coverage.coverage},
-            {"covers", point.coverage.covers},
-            {"opacity", point.opacity},
-            {"vws", point.vws},
-            {"objective", point.objective}};
+    return jsonFromShares({point.opacity, point.vws, point.objective, point.coverage});
 }
 
 Answer run(const Options& o, Progress& progress) {

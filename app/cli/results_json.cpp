@@ -95,8 +95,6 @@ Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& option
     return j;
 }
 
-namespace {
-
 Json jsonFromShares(const SeenShares& shares) {
     return {{"vws", shares.vws},
             {"opacity", shares.opacity},
@@ -104,8 +102,6 @@ Json jsonFromShares(const SeenShares& shares) {
             {"coverage", shares.look.coverage},
             {"covers", shares.look.covers}};
 }
-
-} // namespace
 
 void addSeen(Json& json, const OptimizeResult& r) {
     const Seen& seen = *r.seen;

@@ -19,6 +19,8 @@ void addRemarks(Json& json, const std::optional<PriorityOutcome>& outcome, const
 /// What limits, what would help, who hides whom; features by their names in `tf`.
 Json jsonFromVerdict(const Verdict& verdict, const TransferFunction& tf);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
+/// "vws", "opacity", "objective", "coverage" and "covers" of a picture.
+Json jsonFromShares(const SeenShares& shares);
 /// How strong the picture is: "coverage", "covers", "exact" where it keeps the picture visible instead of the shares,
 /// and "faint" where something of it cannot be seen.
 void addSeen(Json& json, const OptimizeResult& result);

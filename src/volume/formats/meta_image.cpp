@@ -193,8 +193,9 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
     layout.directions = directionsIn(header, sizes.size());
     layout.worldAxes = worldAxesIn(header);
     if (layout.worldAxes == WorldAxes::Patient) {
-        layout.spacing *= millimetresIn(header);
-        layout.origin *= millimetresIn(header);
+        const double millimetres = millimetresIn(header);
+        layout.spacing *= millimetres;
+        layout.origin *= millimetres;
     }
     layout.bigEndian = isBigEndian(header);
     layout.encoding = encodingIn(header);

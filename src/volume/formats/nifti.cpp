@@ -31,11 +31,10 @@ constexpr HeaderForm kForms[]{
     {1, 348, 344, 70, 40, 76, 108, 112, 116, 136, 252, 254, 256, 280, 123, 68},
     {2, 540, 4, 12, 16, 104, 168, 176, 184, 216, 344, 348, 352, 400, 500, 504},
 };
-constexpr std::size_t kLargestHeader = 540;
 
-/// The first bytes, unpacked where the file is gzip; fewer where there are no more.
+/// The bytes of the longest header, unpacked where the file is gzip; fewer where there are no more.
 std::vector<unsigned char> headerBytes(const std::string& path) {
-    std::vector<unsigned char> bytes(kLargestHeader);
+    std::vector<unsigned char> bytes(kForms[1].bytes);
     const gzFile file = gzopen(path.c_str(), "rb"); // reads plain files as they are
     if (file == nullptr) throw FileError("cannot read the file", path, "check its permissions");
     const int read = gzread(file, bytes.data(), static_cast<unsigned>(bytes.size()));

@@ -205,20 +205,19 @@ bool ZlibBlocks::skip(std::uint64_t count) {
 
 std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job) {
     const std::uint64_t stored = storedFrom(data);
-    const char* toDo = "check the extent and the type of the array, or copy the file again";
     auto from = encodedBytes(data, job);
     const Header header = readHeader(*from, data, stored);
     if (header.bytes != bytes)
         throw FileError("the array has " + std::to_string(header.bytes) + " bytes, but its extent and type need " +
                             std::to_string(bytes),
-                        data.path, toDo);
+                        data.path, kCheckArray);
     if (!data.base64 && !data.compressed) {
         const auto before = static_cast<std::uint64_t>(data.headerBytes);
-        requireStored(data.path, Encoding::Raw, bytes, 1, stored - before, toDo);
+        requireStored(data.path, Encoding::Raw, bytes, 1, stored - before, kCheckArray);
         return data.start + before;
     }
     requireStored(data.path, data.compressed ? Encoding::Deflate : Encoding::Raw, bytes, 1,
-                  data.compressed ? stored : stored / 4 * 3 + 3, toDo);
+                  data.compressed ? stored : stored / 4 * 3 + 3, kCheckArray);
     // Unpacked once without keeping it: nothing is allocated for what is not there.
     const auto unpacked = openVtkData(data, job);
     std::vector<char> piece(1u << 18);

@@ -10,6 +10,9 @@
 
 namespace pellucid {
 
+/// What to do about an array that has not the bytes that its header asks for.
+inline constexpr const char* kCheckArray = "check the extent and the type of the array, or copy the file again";
+
 /// The bytes of base64 digits; blanks are skipped, digits may follow padding, anything else ends the data.
 class Base64Bytes final : public ByteSource {
 public:

@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kCheckArray = "check the extent and the type of the array, or copy the file again";
-
 /// As many finite numbers as `otherwise` has, which are taken where the text is empty.
 std::vector<double> numbersIn(const std::string& text, const std::string& what, const std::vector<double>& otherwise,
                               const std::string& path) {
