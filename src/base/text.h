@@ -31,7 +31,8 @@ std::string anyOf(const std::vector<std::string>& words);
 std::vector<std::string> splitWords(std::string_view text);
 std::string trimmed(std::string_view text);
 std::string lowerCase(std::string_view text);
-/// Numbers independent of the locale; the whole text must be the number. Return false otherwise.
+/// Numbers independent of the locale; the whole text must be the number. Return false otherwise, and where it is too
+/// large for the type; what is nearer to 0 than any number of the type is 0.
 bool parseNumber(std::string_view text, std::int64_t& value);
 bool parseNumber(std::string_view text, double& value);
 

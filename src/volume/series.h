@@ -41,8 +41,8 @@ struct SeriesListing {
 /// number to the largest at the step most of them follow at. A number between that is not there is a frame, too, so
 /// that frames stay where they are in time: load() of it fails, and it is passed over like any broken one. Where more
 /// frames were missing than there are, only those that there are count, and SeriesFrame::afterGap tells. Of files of
-/// several suffixes those of the most frequent one are taken. Files that hold several steps give all of them, one file
-/// after the other.
+/// several suffixes those of the most frequent one are taken; a_0.vti beside a.pvti is a piece of that one. Files that
+/// hold several steps give all of them, one file after the other.
 ///
 /// Frames keep raw, missing, component, axes, array, downsample and region of `source`. Throws FileError where nothing
 /// is found, UsageError for VolumeSource::frames that are not there.
