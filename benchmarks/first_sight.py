@@ -158,22 +158,24 @@ def look(cli, name, volume, scratch):
     camera = scratch / "opening.camera.json"
     camera.write_text(json.dumps(kind["camera"]))
     volume = [*volume, "--camera", str(camera)]  # tents:3, too: its own view would be that of the box
-    auto = ("--tf", str(tf))
-    lit = picture(cli, volume, scratch, "--shading", *auto)
+    # What the object lies on is drawn faintly, and is no part of the object.
+    bare = [word for clip in kind.get("holder", {}).get("clip", []) for word in ("--clip", clip)]
+    auto = ("--tf", str(tf), *bare)
+    lit = picture(cli, volume, scratch, "--shading")
     alpha = picture(cli, volume, scratch, "--background", "transparent", *auto)[..., 3] / 255
     solid = json.loads(tf.read_text())
     for point in solid["points"]:
         point["opacity"] = 1.0 if point["opacity"] > 0 else 0.0
     (scratch / "solid.tf.json").write_text(json.dumps(solid))
-    inside = picture(cli, volume, scratch, "--background", "transparent", "--tf", str(scratch / "solid.tf.json"))[..., 3] > 127
+    inside = picture(cli, volume, scratch, "--background", "transparent", "--tf", str(scratch / "solid.tf.json"), *bare)[..., 3] > 127
     unlit = picture(cli, volume, scratch, *auto)
-    tents = picture(cli, volume, scratch, "--tf", "tents:3")
-    lit_tents = picture(cli, volume, scratch, "--shading", "--tf", "tents:3")
+    tents = picture(cli, volume, scratch, "--tf", "tents:3", *bare)
+    lit_tents = picture(cli, volume, scratch, "--shading", "--tf", "tents:3", *bare)
     seen = run(cli, "measure", *volume, "--engine", "cpu", "--json")["features"]
     visible = sorted((f["visibility"] for f in seen), reverse=True)
     result = {"name": name, "kind": kind["kind"], "features": len(seen), "picture": lit, "visibility": visible[:2],
               "entropy": grey_entropy(unlit[inside]), "entropy of tents": grey_entropy(tents[inside]),
-              "lit": grey_entropy(lit[inside]), "lit of tents": grey_entropy(lit_tents[inside]),
+              "lit": grey_entropy(picture(cli, volume, scratch, "--shading", *auto)[inside]), "lit of tents": grey_entropy(lit_tents[inside]),
               "whole": grey_entropy(unlit), "whole of tents": grey_entropy(tents), "fails": []}
     rows, columns = np.nonzero(alpha > 0.02)
     result["fill"] = (max(np.ptp(rows), np.ptp(columns)) + 1) / PIXELS if rows.size else None

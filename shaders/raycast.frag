@@ -4,6 +4,7 @@
 //   GRADIENT_OPACITY, OCCLUSION   with LIGHT: these parts of it
 //   VOXEL_COLORS   colours are those of voxels (include/voxel_color.glsl)
 //   GROUND      rays end at the ground
+//   FAINT       what lies beyond some planes is thinned
 //   HALVES      steps are halved once, and on where the picture hangs on them
 //   BRICKS      one of several: goes on from what the bricks in front have left in the images
 //   out  u_state   composite, surfaces: premultiplied sRGB and opacity; else: the intensity, for its mean the length of
@@ -62,8 +63,13 @@ vec4 segment(Met a, Met b) {
 #endif
 }
 
-float depthOf(vec4 mean, Met a, Met b) {
-    return mean.a * (b.place - a.place) * u_step.y;
+float depthOf(PictureRay ray, vec4 mean, Met a, Met b) {
+    float path = b.place - a.place;
+#ifdef FAINT
+    float within = min(b.place, ray.clear.y) - max(a.place, ray.clear.x);
+    path *= mix(u_faintDensity, 1.0, clamp(within / max(path, 1e-6), 0.0, 1.0));
+#endif
+    return mean.a * path * u_step.y;
 }
 
 // What one ray has gathered since it was lit.
@@ -74,7 +80,7 @@ struct Pending {
 };
 
 void absorb(PictureRay ray, vec4 mean, Met a, Met b, inout float alphaBefore, inout Pending pending) {
-    float depth = depthOf(mean, a, b);
+    float depth = depthOf(ray, mean, a, b);
     if (!(depth > 0.0)) return;
     float place = 0.5 * (a.place + b.place);
 #ifdef GRADIENT_OPACITY
@@ -105,10 +111,10 @@ float hiddenDepth(Met a, Met m, Met b) {
 }
 
 // Whether two halves of a segment look otherwise than the whole does.
-bool isCoarse(Met a, Met m, Met b, vec4 first, vec4 second, float clear) {
+bool isCoarse(PictureRay ray, Met a, Met m, Met b, vec4 first, vec4 second, float clear) {
     vec4 whole = segment(a, b);
-    float all = opacityOfDepth(depthOf(whole, a, b)), one = opacityOfDepth(depthOf(first, a, m)),
-          two = (1.0 - one) * opacityOfDepth(depthOf(second, m, b));
+    float all = opacityOfDepth(depthOf(ray, whole, a, b)), one = opacityOfDepth(depthOf(ray, first, a, m)),
+          two = (1.0 - one) * opacityOfDepth(depthOf(ray, second, m, b));
     vec3 away = all / max(whole.a, 1e-20) * whole.rgb - one / max(first.a, 1e-20) * first.rgb -
                 two / max(second.a, 1e-20) * second.rgb;
     float error = max(max(abs(away.r), abs(away.g)), abs(away.b)) + abs(all - one - two) + min(1.0, hiddenDepth(a, m, b));
@@ -147,7 +153,7 @@ vec4 traced(PictureRay ray, vec4 sum) {
             Met middle = meet(ray, mix(from, to, done + 0.5 * size)), next = meet(ray, mix(from, to, done + size));
             vec4 first = segment(last, middle), second = segment(middle, next);
             bool own = isOwn(ray, from, to);
-            if (own && size > u_halves.x && isCoarse(last, middle, next, first, second, 1.0 - sum.a)) {
+            if (own && size > u_halves.x && isCoarse(ray, last, middle, next, first, second, 1.0 - sum.a)) {
                 size *= 0.5;
             } else {
                 if (own) {

@@ -41,15 +41,16 @@ bool onFace(ivec3 voxel) {
     return axis == u_face.x && (d[axis] > 0.0 ? 1 : -1) == u_face.y;
 }
 
-#ifdef CLIPPED
-// Whether the centre of a voxel is kept: the sides behind those of the box.
+// Whether the centre of a voxel is kept, by the sides behind those of the box, and not faint.
 bool isKept(ivec3 voxel) {
-    const float kClipTie = 1e-3; // C++: src/render/clipping.h
     for (int i = 6; i < u_sideCount; ++i)
         if (dot(u_sides[i].xyz, vec3(voxel)) - u_sides[i].w > kClipTie) return false;
+#ifdef FAINT
+    for (int i = 0; i < u_faintCount; ++i)
+        if (dot(u_faint[i].xyz, vec3(voxel)) - u_faint[i].w > kClipTie) return false;
+#endif
     return true;
 }
-#endif
 
 vec2 pixelOf(vec3 local) {
     return (local.xy / (1.0 + local.z * u_inverseDistance) - u_picture.xy) * u_picture.zw;
@@ -80,9 +81,7 @@ float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) 
 bool visibilityOf(ivec3 voxel, out ivec3 texel, out int code, out LANE visibility[PACKS]) {
     visibility[0] = 0.0;
     if (any(greaterThanEqual(voxel.xy, u_dims.xy)) || voxel.z >= u_planes.y) return false;
-#ifdef CLIPPED
     if (!isKept(voxel)) return false;
-#endif
     LANE tau[PACKS], light[PACKS];
     if (!onFace(voxel) || !contentOf(voxel, texel, code, tau)) return false;
     vec3 local = u_localFromVoxel * (vec3(voxel) - u_origin);

@@ -64,9 +64,7 @@ float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) 
 bool visibilityOf(ivec3 q, out ivec3 texel, out int code, out LANE visibility[PACKS]) {
     for (int p = 0; p < PACKS; ++p) visibility[p] = LANE(0.0);
     if (any(greaterThanEqual(q.xy, u_dims.xy)) || q.z >= u_planes.y) return false;
-#ifdef CLIPPED
     if (!isKept(q)) return false;
-#endif
     ivec3 voxel = voxelAt(q);
     if (!inPyramid(voxel)) return false;
     LANE tau[PACKS], light[PACKS];

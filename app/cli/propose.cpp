@@ -70,22 +70,25 @@ Json jsonOf(const Proposal& p, const std::vector<double>& targets, double second
     return json;
 }
 
-/// What leaves a holder out, as options: "--clip x:0.1:0.9 --clip y:0:0.8".
+/// What cuts a holder off, as values of --clip: "x:0.1:0.9", or planes.
 std::vector<std::string> clipsWithout(const Holder& holder) {
     std::vector<std::string> clips;
-    for (int a = 0; a < 3; ++a) {
-        const double lo = holder.without.lo[a], hi = holder.without.hi[a];
-        if (lo > 0 || hi < 1)
-            clips.push_back(std::string(1, "xyz"[a]) + ":" + fixedText(lo, 3) + ":" + fixedText(hi, 3));
+    const BoxPart& part = holder.without;
+    for (int a = 0; a < 3; ++a)
+        if (part.lo[a] > 0 || part.hi[a] < 1)
+            clips.push_back(std::string(1, "xyz"[a]) + ":" + fixedText(part.lo[a], 4) + ":" + fixedText(part.hi[a], 4));
+    for (const ClipPlane& plane : part.planes) {
+        std::string clip;
+        for (int a = 0; a < 3; ++a) clip += plainText(plane.normal[a]) + ",";
+        clips.push_back(clip + plainText(plane.offset));
     }
     return clips;
 }
 
 std::string textOf(const Holder& holder) {
-    std::string options;
-    for (const std::string& clip : clipsWithout(holder)) options += " --clip " + clip;
     return std::string("the object lies on a board or holder, which runs along ") + "xyz"[holder.along] + " at " +
-           (holder.isHigh ? "high " : "low ") + "xyz"[holder.axis] + ":" + options + " leaves it out";
+           (holder.isHigh ? "high " : "low ") + "xyz"[holder.axis] +
+           ": it is faint, and in no figure; --holder 0 leaves it out, --holder 1 draws it like the rest";
 }
 
 Answer run(const Options& o, Progress& progress) {
@@ -94,16 +97,22 @@ Answer run(const Options& o, Progress& progress) {
     const Volume& volume = *opened.scene.volume;
     Proposal proposal = propose(volume, progress.phase("looking at the data"));
     const Volume seen = proposal.window == volume.range() ? volume : volume.withRange(proposal.window);
-    const View home(openingView(seen, proposal.tf));
+    const std::optional<Holder> holder = findHolder(seen, proposal.tf);
+    View home(openingView(seen, proposal.tf));
+    if (holder) home.clipping.rest.within = holder->without;
     const FirstSight sight = withOpacitiesForView(seen, proposal, proposal.tf, home);
     proposal.tf = sight.tf;
-    const std::optional<Holder> holder = findHolder(seen, proposal.tf);
     if (holder) proposal.why.push_back(textOf(*holder));
     const double seconds = looking.seconds();
     if (o.outTf) writeTfFile(proposal.tf, proposal.window, *o.outTf);
     Json json = jsonOf(proposal, sight.shares, seconds);
     json.update(jsonFromView(home.camera, volume.geometry()));
-    if (holder) json["holder"] = {{"clip", clipsWithout(*holder)}, {"lost", holder->lost}};
+    if (holder)
+        json["holder"] = {{"along", std::string(1, "xyz"[holder->along])},
+                          {"toward", {holder->toward.x, holder->toward.y, holder->toward.z}},
+                          {"density", faintRest(*holder, seen, proposal.tf).density},
+                          {"clip", clipsWithout(*holder)},
+                          {"lost", holder->lost}};
     return {textOf(proposal, sight.shares, seconds), std::move(json), opened.notices()};
 }
 

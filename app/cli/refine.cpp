@@ -56,6 +56,7 @@ void checkPicture(const Options& o, bool looks) {
                      : camera.view || camera.namedView ? "--view"
                      : camera.orthographic             ? "--orthographic"
                      : !o.scene.clip.clips.empty()     ? "--clip"
+                     : o.scene.clip.holder             ? "--holder"
                                                        : nullptr;
     if (of)
         throw UsageError("refinement looks at a picture only where a region of it is prioritized", of,

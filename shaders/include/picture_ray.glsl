@@ -9,10 +9,16 @@ layout(location = 6) uniform vec3 u_boxLo;        // part of the box that is dra
 layout(location = 7) uniform vec3 u_boxHi;
 layout(location = 8) uniform float u_nearest;    // t of the eye; far in front where rays are parallel
 layout(location = 9) uniform int u_planeCount;   // clip planes: dot(xyz, voxel) <= w is kept
-layout(location = 30) uniform vec4 u_planes[6];
+layout(location = 54) uniform vec4 u_planes[18];
 layout(location = 10) uniform vec2 u_jitter;     // size of the picture in pixels; x = 0: samples are not shifted
 layout(location = 13) uniform vec3 u_brickLo; // voxels that the texture stands for: segments belong to the brick that
 layout(location = 14) uniform vec3 u_brickHi; // holds their middle
+
+#ifdef FAINT
+layout(location = 40) uniform int u_faintCount; // planes beyond which optical depths are thinned
+layout(location = 41) uniform vec4 u_faint[12];
+layout(location = 53) uniform float u_faintDensity; // to this part of their own
+#endif
 
 #ifdef GROUND
 layout(binding = 6) uniform sampler2D u_groundDepth; // t where rays end; infinite: nowhere
@@ -27,6 +33,7 @@ struct PictureRay {
     float first, end; // numbers of samples that this brick has to look at
     vec3 view;        // unit vector toward the viewer, in the camera's right, up, toward the viewer
     vec2 depth;       // t at u = 0, and what a step adds
+    vec2 clear;       // FAINT: u between which nothing is faint
 };
 
 // In [0, 1), by pixel (C++: src/render/cpu has the same).
@@ -69,6 +76,15 @@ PictureRay rayOfFragment(vec2 fragment) {
     ray.point = origin + enter * direction;
     ray.step = direction * perStep;
     ray.count = leave > enter ? (leave - enter) / perStep : 0.0;
+    ray.clear = vec2(-1e30, 1e30);
+#ifdef FAINT
+    for (int i = 0; i < u_faintCount; ++i) {
+        float room = u_faint[i].w - dot(u_faint[i].xyz, ray.point), rate = dot(u_faint[i].xyz, ray.step);
+        if (rate < 0.0) ray.clear.x = max(ray.clear.x, room / rate);
+        if (rate > 0.0) ray.clear.y = min(ray.clear.y, room / rate);
+        if (rate == 0.0 && room < 0.0) ray.clear.y = -1e30;
+    }
+#endif
     ray.shift = 0.0;
     if (u_jitter.x > 0.0)
         ray.shift = hashOf(uvec2((vec2(0.5) + vec2(0.5, -0.5) * picture.xy) * u_jitter)) - 1.0;

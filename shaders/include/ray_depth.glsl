@@ -72,7 +72,11 @@ void follow(Ray ray, float from, float to, inout Sample last, inout LANE depth[P
         next += onward;
         float end = away > 0.0 ? min(endOfPiece(ray, next), to) : max(endOfPiece(ray, next), to);
         Sample now = sampleAt(ray, end);
-        addPiece(depth, last, now, abs(end - from) * perC);
+        float path = abs(end - from) * perC;
+#ifdef FAINT
+        path *= thinned(from, end);
+#endif
+        addPiece(depth, last, now, path);
         last = now;
         from = end;
     }

@@ -3,6 +3,7 @@
 //                   to dims - 0.5
 //   ray             fixed by the point (a, b) where it meets the reference plane c = u_reference
 //   CLIPPED         planes cut the volume
+//   FAINT           what lies beyond other planes is thinned
 layout(location = 1) uniform vec4 u_eye;        // xyz: the eye in q (perspective); w: 1 perspective, 0 orthographic
 layout(location = 2) uniform vec2 u_shear;      // orthographic: change of (a, b) per unit of c
 layout(location = 3) uniform float u_reference; // c of the reference plane
@@ -46,19 +47,30 @@ float lengthPerC(Ray ray) {
     return length(u_worldFromQ * vec3(ray.slope, 1.0));
 }
 
-#ifdef CLIPPED
 const int kMostPlanes = 12;
 const float kClipTie = 1e-3; // C++: src/render/clipping.h
+#ifdef CLIPPED
 layout(location = 28) uniform int u_planeCount;
 layout(location = 29) uniform vec4 u_clip[kMostPlanes]; // dot(xyz, q) - w is how far q lies beyond, in d0
+#endif
+#ifdef FAINT
+layout(location = 47) uniform float u_faintDensity; // what lies beyond the planes keeps of its optical depth
+layout(location = 48) uniform int u_faintCount;
+layout(location = 49) uniform vec4 u_faint[kMostPlanes];
+#endif
 
-// Whether the centre of a voxel is kept.
+// Whether the centre of a voxel is kept, and not faint.
 bool isKept(ivec3 q) {
+#ifdef CLIPPED
     for (int i = 0; i < u_planeCount; ++i)
         if (dot(u_clip[i].xyz, vec3(q)) - u_clip[i].w > kClipTie) return false;
+#endif
+#ifdef FAINT
+    for (int i = 0; i < u_faintCount; ++i)
+        if (dot(u_faint[i].xyz, vec3(q)) - u_faint[i].w > kClipTie) return false;
+#endif
     return true;
 }
-#endif
 
 // How a ray passes through the box, and through what clipping leaves of it: c where it enters, c where it leaves. The
 // sides by which it leaves are moved outward by `margin` voxels: just outside the box a ray goes on as the volume's
@@ -66,6 +78,31 @@ bool isKept(ivec3 q) {
 struct Passage {
     float enter, leave;
 };
+
+// Takes of a passage what lies beyond a plane: dot(xyz, q) - w is how far q does.
+void cutPassage(inout Passage p, Ray ray, vec4 plane, float margin) {
+    float beyond = dot(plane.xyz, vec3(ray.at, u_reference)) - plane.w, rate = dot(plane.xyz, vec3(ray.slope, 1.0));
+    // Voxels on a plane that rays run along are kept: their rays must be, too.
+    if (abs(rate) < 1e-2) beyond -= kClipTie;
+    float outward = margin * (abs(plane.x) + abs(plane.y));
+    if (abs(rate) < 1e-7) {
+        if (beyond > outward) p.leave = -1e9;
+    } else if (rate < 0.0) {
+        p.enter = max(p.enter, u_reference - beyond / rate);
+    } else {
+        p.leave = min(p.leave, u_reference - (beyond - outward) / rate);
+    }
+}
+
+#ifdef FAINT
+Passage g_clear; // of the ray that passageOf() was asked about last: where nothing is faint
+
+// What of its own the part of that ray between two c, either way round, keeps.
+float thinned(float from, float to) {
+    float within = min(max(from, to), g_clear.leave) - max(min(from, to), g_clear.enter);
+    return mix(u_faintDensity, 1.0, clamp(within / max(abs(to - from), 1e-9), 0.0, 1.0));
+}
+#endif
 
 Passage passageOf(Ray ray, float margin) {
     Passage p = Passage(u_front, float(u_dims.z) - 0.5);
@@ -82,20 +119,11 @@ Passage passageOf(Ray ray, float margin) {
         p.leave = min(p.leave, leave);
     }
 #ifdef CLIPPED
-    for (int i = 0; i < u_planeCount; ++i) {
-        vec3 normal = u_clip[i].xyz;
-        float beyond = dot(normal, vec3(ray.at, u_reference)) - u_clip[i].w, rate = dot(normal, vec3(ray.slope, 1.0));
-        // Voxels on a plane that rays run along are kept: their rays must be, too.
-        if (abs(rate) < 1e-2) beyond -= kClipTie;
-        float outward = margin * (abs(normal.x) + abs(normal.y));
-        if (abs(rate) < 1e-7) {
-            if (beyond > outward) p.leave = -1e9;
-        } else if (rate < 0.0) {
-            p.enter = max(p.enter, u_reference - beyond / rate);
-        } else {
-            p.leave = min(p.leave, u_reference - (beyond - outward) / rate);
-        }
-    }
+    for (int i = 0; i < u_planeCount; ++i) cutPassage(p, ray, u_clip[i], margin);
+#endif
+#ifdef FAINT
+    g_clear = Passage(-1e9, 1e9);
+    for (int i = 0; i < u_faintCount; ++i) cutPassage(g_clear, ray, u_faint[i], margin);
 #endif
     return p;
 }

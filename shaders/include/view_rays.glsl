@@ -56,21 +56,42 @@ float lengthPerC(Ray ray) {
 struct Passage {
     float enter, leave;
 };
+const float kClipTie = 1e-3; // C++: src/render/clipping.h
+
+// Takes of a passage what lies beyond a plane: dot(xyz, voxel) - w is how far a point does.
+void cutPassage(inout Passage p, Ray ray, vec4 plane, float margin) {
+    float beyond = dot(plane.xyz, ray.at) - plane.w, rate = dot(plane.xyz, ray.slope);
+    // Voxels on a plane that rays run along are kept: their rays must be, too.
+    if (abs(rate) < 1e-2) beyond -= kClipTie;
+    if (abs(rate) < 1e-7) {
+        if (beyond > margin) p.leave = -1e9;
+    } else if (rate < 0.0) {
+        p.enter = max(p.enter, -beyond / rate);
+    } else {
+        p.leave = min(p.leave, (margin - beyond) / rate);
+    }
+}
+
+#ifdef FAINT
+const int kMostPlanes = 12;
+layout(location = 47) uniform float u_faintDensity; // what lies beyond the planes keeps of its optical depth
+layout(location = 48) uniform int u_faintCount;
+layout(location = 49) uniform vec4 u_faint[kMostPlanes];
+Passage g_clear; // of the ray that passageOf() was asked about last: where nothing is faint
+
+// What of its own the part of that ray between two c, either way round, keeps.
+float thinned(float from, float to) {
+    float within = min(max(from, to), g_clear.leave) - max(min(from, to), g_clear.enter);
+    return mix(u_faintDensity, 1.0, clamp(within / max(abs(to - from), 1e-9), 0.0, 1.0));
+}
+#endif
 
 Passage passageOf(Ray ray, float margin) {
-    const float kClipTie = 1e-3; // C++: src/render/clipping.h
     Passage p = Passage(0.0, u_slices.z);
-    for (int i = 0; i < u_sideCount; ++i) {
-        float beyond = dot(u_sides[i].xyz, ray.at) - u_sides[i].w, rate = dot(u_sides[i].xyz, ray.slope);
-        // Voxels on a plane that rays run along are kept: their rays must be, too.
-        if (abs(rate) < 1e-2) beyond -= kClipTie;
-        if (abs(rate) < 1e-7) {
-            if (beyond > margin) p.leave = -1e9;
-        } else if (rate < 0.0) {
-            p.enter = max(p.enter, -beyond / rate);
-        } else {
-            p.leave = min(p.leave, (margin - beyond) / rate);
-        }
-    }
+    for (int i = 0; i < u_sideCount; ++i) cutPassage(p, ray, u_sides[i], margin);
+#ifdef FAINT
+    g_clear = Passage(-1e9, 1e9);
+    for (int i = 0; i < u_faintCount; ++i) cutPassage(g_clear, ray, u_faint[i], margin);
+#endif
     return p;
 }

@@ -61,16 +61,16 @@ private:
                               Grid<float>* field, const JobControl& job) {
         view.clipping.validate();
         const Camera camera = sweepCamera(view.camera, m_block.whole);
-        const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, m_block.whole);
+        const VoxelClipping clipping = clippingInVoxels(view.clipping, m_block.whole);
         const std::vector<int> order = sweepOrder(camera, m_block.whole, m_block.blocks);
         OpaqueMap opaque;
-        if (m_volume) opaque = m_volume->opaqueMap(tables, planes);
+        if (m_volume) opaque = m_volume->opaqueMap(tables, clipping);
         std::vector<double> sums(tables.sumCount(), 0.0);
         const std::vector<SweepPass> passes = sweepPasses(camera, m_block.whole);
         for (std::size_t n = 0; n < passes.size(); ++n) {
             SweepInput in;
             if (m_volume) {
-                in = m_volume->input(camera, planes, passes[n], tables, opaque, weights, field);
+                in = m_volume->input(camera, clipping, passes[n], tables, opaque, weights, field);
             } else { // nothing to do, but where rays lie has to be known
                 tables.giveTo(in);
                 setSweepRays(in, camera, passes[n], m_block.whole, SweepCare::Large);

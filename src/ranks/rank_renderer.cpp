@@ -1,7 +1,9 @@
 #include "ranks/rank_renderer.h"
 
 #include <algorithm>
-#include <optional>
+#include <limits>
+
+#include <glm/common.hpp>
 
 #include "base/error.h"
 #include "ranks/rank_volume.h"
@@ -108,19 +110,30 @@ Image composited(Communicator& ranks, const std::vector<int>& order, const Image
     return image;
 }
 
-/// What is left of a volume's box within a block, as fractions of the box around what is stored of it; empty where
-/// nothing is. Half-spaces are the world's.
-std::optional<Clipping> clippingOf(const Clipping& whole, const BlockVolume& block) {
-    Clipping here = whole;
-    const Vec3 dims(block.whole.dims), stored(block.region.hi - block.region.lo);
-    for (int a = 0; a < 3; ++a) {
-        // From the faces of the box, voxels.
-        const double lo = std::max<double>(whole.lo[a] * dims[a], block.block().lo[a]),
-                     hi = std::min<double>(whole.hi[a] * dims[a], block.block().hi[a]);
-        if (!(lo < hi)) return {};
-        here.lo[a] = (lo - block.region.lo[a]) / stored[a];
-        here.hi[a] = (hi - block.region.lo[a]) / stored[a];
-    }
+/// The block itself, as a part of the box around what is stored of it.
+BoxPart partOf(const BlockVolume& block) {
+    BoxPart part;
+    const Vec3 stored(block.region.hi - block.region.lo);
+    part.lo = Vec3(block.block().lo - block.region.lo) / stored;
+    part.hi = Vec3(block.block().hi - block.region.lo) / stored;
+    return part;
+}
+
+/// A part of the whole's box, for the box around what is stored of a block. Half-spaces are the world's.
+BoxPart inBlock(const BoxPart& whole, const BlockVolume& block) {
+    BoxPart here = whole;
+    const Vec3 dims(block.whole.dims), stored(block.region.hi - block.region.lo), first(block.region.lo);
+    here.lo = glm::max(Vec3(0), (whole.lo * dims - first) / stored);
+    here.hi = glm::min(Vec3(1), (whole.hi * dims - first) / stored);
+    for (int a = 0; a < 3; ++a)
+        if (!(here.lo[a] < here.hi[a])) // nothing of it is here
+            return {{0, 0, 0}, {1, 1, 1}, {{{1, 0, 0}, -std::numeric_limits<float>::max()}}};
+    return here;
+}
+Clipping clippingOf(const Clipping& whole, const BlockVolume& block) {
+    Clipping here;
+    here.setPart(inBlock(whole.part(), block));
+    here.rest = {inBlock(whole.rest.within, block), whole.rest.density};
     return here;
 }
 
@@ -143,6 +156,7 @@ public:
         if (m_block.isEmpty()) return;
         CpuRenderOptions options;
         options.blockOf = m_block.whole;
+        options.part = partOf(m_block);
         m_renderer = makeCpuRenderer(m_block.stored, options);
     }
 
@@ -156,10 +170,8 @@ public:
         Image image(settings.width, settings.height);
         if (m_renderer) {
             RenderSettings mine = settings;
-            if (const auto clipping = clippingOf(settings.clipping, m_block)) {
-                mine.clipping = *clipping;
-                image = m_renderer->render(camera, tf, mine, job);
-            }
+            mine.clipping = clippingOf(settings.clipping, m_block);
+            image = m_renderer->render(camera, tf, mine, job);
         }
         const std::vector<int> order =
             camera.projection == Projection::Perspective

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-void Clipping::validate() const {
+void BoxPart::validate() const {
     for (int a = 0; a < 3; ++a)
         if (!(lo[a] >= 0 && lo[a] < hi[a] && hi[a] <= 1))
             throw UsageError("a clip interval needs 0 <= a < b <= 1", "clip", "give fractions of the box");
@@ -24,7 +24,14 @@ void Clipping::validate() const {
     }
 }
 
-std::vector<VoxelPlane> planesInVoxels(const Clipping& clipping, const Geometry& geometry) {
+void Clipping::validate() const {
+    part().validate();
+    rest.within.validate();
+    if (!(rest.density >= 0 && rest.density < 1))
+        throw UsageError("what is faint needs 0 <= density < 1", "holder", "give 0 to leave it out, 0.05 to see it");
+}
+
+std::vector<VoxelPlane> planesInVoxels(const BoxPart& part, const Geometry& geometry) {
     std::vector<VoxelPlane> planes;
     const Mat3 worldFromIndex = geometry.worldFromIndex(), indexFromWorld = geometry.indexFromWorld();
     const double d0 = geometry.d0();
@@ -34,15 +41,27 @@ std::vector<VoxelPlane> planesInVoxels(const Clipping& clipping, const Geometry&
         const double apart = 1 / (glm::length(gradient) * d0);
         Vec3 normal(0);
         normal[a] = apart;
-        if (clipping.lo[a] > 0) planes.push_back({-normal, -apart * (clipping.lo[a] * geometry.dims[a] - 0.5)});
-        if (clipping.hi[a] < 1) planes.push_back({normal, apart * (clipping.hi[a] * geometry.dims[a] - 0.5)});
+        if (part.lo[a] > 0) planes.push_back({-normal, -apart * (part.lo[a] * geometry.dims[a] - 0.5)});
+        if (part.hi[a] < 1) planes.push_back({normal, apart * (part.hi[a] * geometry.dims[a] - 0.5)});
     }
-    for (const ClipPlane& plane : clipping.planes) {
+    for (const ClipPlane& plane : part.planes) {
         const double scale = 1 / (glm::length(plane.normal) * d0);
         planes.push_back({glm::transpose(worldFromIndex) * plane.normal * scale,
                           (plane.offset - glm::dot(plane.normal, geometry.origin)) * scale});
     }
     return planes;
+}
+
+std::vector<VoxelPlane> planesInVoxels(const Clipping& clipping, const Geometry& geometry) {
+    std::vector<VoxelPlane> planes = planesInVoxels(clipping.part(), geometry);
+    const std::vector<VoxelPlane> faint = planesInVoxels(clipping.rest.within, geometry);
+    planes.insert(planes.end(), faint.begin(), faint.end());
+    return planes;
+}
+
+VoxelClipping clippingInVoxels(const Clipping& clipping, const Geometry& geometry) {
+    return {planesInVoxels(clipping.part(), geometry), planesInVoxels(clipping.rest.within, geometry),
+            clipping.rest.density};
 }
 
 void cut(RayInterval& interval, const Ray& ray, std::span<const VoxelPlane> planes) {

@@ -1,9 +1,12 @@
 #include "render/holder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "render/cradle.h"
 #include "render/drawn_cells.h"
+#include "tf/opacity.h"
 
 namespace pellucid {
 
@@ -193,7 +196,8 @@ std::optional<Holder> findHolder(const Volume& volume, const TransferFunction& t
                 const Cut cut = bestCut({section, vIsQ}, isHigh);
                 if (cut.left > kMostLeft || cut.lost > kMostLost || cut.left + 2 * cut.lost >= least) continue;
                 least = cut.left + 2 * cut.lost;
-                Holder holder{along, vIsQ ? section.axisOfQ() : section.axisOfP(), isHigh, {}, cut.lost};
+                Holder holder{along, vIsQ ? section.axisOfQ() : section.axisOfP(), isHigh, {}, {}, cut.lost};
+                holder.toward = volume.geometry().directions[holder.axis] * (isHigh ? 1.0 : -1.0);
                 const int u = vIsQ ? section.axisOfP() : section.axisOfQ();
                 const auto fraction = [&](int axis, int cell) {
                     return static_cast<double>(grid.begin(axis, cell)) / volume.dims()[axis];
@@ -204,7 +208,42 @@ std::optional<Holder> findHolder(const Volume& volume, const TransferFunction& t
                 found = holder;
             }
     }
+    if (!found) found = findCradle(volume.geometry(), grid, drawn, job);
     return found;
+}
+
+FaintRest faintRest(const Holder& holder, const Volume& volume, const TransferFunction& tf, const JobControl& job) {
+    constexpr double kNothing = 0.05, kLeast = 0.002, kMost = 0.5;
+    const CellGrid grid(Int3(0), volume.dims());
+    const TfSampler sampler(tf);
+    const std::vector<VoxelPlane> planes = planesInVoxels(holder.without, volume.geometry());
+    const int axis = holder.axis;
+    // Optical depths of lines along the axis, from what lies outside.
+    const double path = volume.geometry().spacing[axis] / volume.geometry().d0();
+    const Grid<double> depths = ofCells(volume, grid, job, [&](const Int3& voxel, double s) {
+        return std::isnan(s) || keeps(planes, Vec3(voxel)) ? 0.0 : path * opticalDepthOfOpacity(sampler.opacity(s));
+    });
+    Grid<double> lines([&] {
+        Int3 dims = grid.cells;
+        dims[axis] = 1;
+        return dims;
+    }());
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        const Int3 cell = voxelAt(grid.cells, i);
+        Int3 line = cell;
+        line[axis] = 0;
+        lines.at(line.x, line.y, line.z) +=
+            depths[i] * (grid.begin(axis, cell[axis] + 1) - grid.begin(axis, cell[axis]));
+    }
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (lines[i] < kNothing) continue;
+        sum += lines[i];
+        ++count;
+    }
+    const double density = opticalDepthOfOpacity(kFaintHolder) * count / sum;
+    return {holder.without, count == 0 ? kMost : std::clamp(density, kLeast, kMost)};
 }
 
 } // namespace pellucid

@@ -61,6 +61,10 @@ public:
         between(t + length / 2, length / 2, middle, to, metAfter, halvings - 1);
     }
 
+    /// What follows is faint: in no feature, its optical depth that part of its own.
+    void enterFaint(double density) { m_faint = density; }
+    void leaveFaint() { m_faint.reset(); }
+
     void sample(double t, const Interpolated& met) {
         m_result.samples.push_back({t, met.validShare > 0 ? met.value : kNone, -std::expm1(-m_depth)});
     }
@@ -113,10 +117,10 @@ private:
         if (!(begin < end)) return;
         const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
         const double middle = mix(from.value, to.value, (begin + end) / 2);
-        const int feature = featureAt(m_tf.features, middle);
+        const int drawn = featureAt(m_tf.features, middle), feature = m_faint ? -1 : drawn;
         double tau = 0, valid = 0; // τ·d0, and the same where voxels are valid
         Vec3 emitted(0);
-        if (m_only < 0 || feature == m_only)
+        if (m_only < 0 || drawn == m_only)
             for (const auto& [node, weight] : kGauss) {
                 const double u = mix(begin, end, node), s = mix(from.value, to.value, u);
                 const double here = weight * opticalDepthOfOpacity(m_sampler.opacity(s));
@@ -134,6 +138,7 @@ private:
             const double a = m_sampler.opacity(mix(from.value, to.value, mix(begin, end, 0.25))),
                          b = m_sampler.opacity(mix(from.value, to.value, mix(begin, end, 0.75)));
             opticalDepth = valid / tau * meanDepth(a + (a - b) / 2, b + (b - a) / 2).value_or(tau) * own / m_d0;
+            opticalDepth *= m_faint.value_or(1);
         }
         const double share = std::exp(-m_depth) * -std::expm1(-opticalDepth);
         if (share > 0) m_color += share * emitted / valid;
@@ -155,7 +160,8 @@ private:
     double m_d0;
     int m_only;
     RayProbe& m_result;
-    std::vector<double> m_cuts; ///< intensities where α or the feature changes its ways, ascending
+    std::vector<double> m_cuts;    ///< intensities where α or the feature changes its ways, ascending
+    std::optional<double> m_faint; ///< empty: it is not
     double m_depth = 0;
     Vec3 m_color{0};
     std::vector<Most> m_most; ///< the rest, then each feature
@@ -178,16 +184,19 @@ RayProbe probe(const Volume& volume, const TransferFunction& tf, const View& vie
     result.shares.assign(tf.features.size(), 0);
     const Ray world = pixelRay(view.camera, x, y, width, height), ray = inVoxels(world, g);
     RayInterval inside = intersectBox(ray, g);
-    cut(inside, ray, planesInVoxels(view.clipping, g));
     if (view.camera.projection == Projection::Perspective) inside.enter = std::max(inside.enter, 0.0);
+    const VoxelClipping clipping = clippingInVoxels(view.clipping, g);
+    cut(inside, ray, clipping.cut);
+    RayInterval clear = inside;
+    cut(clear, ray, clipping.faint);
+    if (clipping.density == 0) inside = clear;
     if (inside.empty()) return result;
+    if (clear.empty()) clear.enter = clear.exit = inside.exit;
     result.hit = true;
     result.entry = world.origin + inside.enter * world.direction;
     result.exit = world.origin + inside.exit * world.direction;
 
-    const double length = inside.exit - inside.enter;
-    const auto steps = static_cast<std::size_t>(std::ceil(length / g.d0() * kStepsPerD0));
-    const double step = length / static_cast<double>(steps);
+    const double ends[4] = {0, clear.enter - inside.enter, clear.exit - inside.enter, inside.exit - inside.enter};
     Walk walk(tf, g.d0(), onlyFeature, result);
     std::visit(
         [&](const auto& values) {
@@ -198,12 +207,22 @@ RayProbe probe(const Volume& volume, const TransferFunction& tf, const View& vie
             };
             Interpolated from = metAfter(0);
             walk.sample(0, from);
-            for (std::size_t n = 0; n < steps; ++n) {
-                const double t = static_cast<double>(n) * step;
-                const Interpolated to = metAfter(t + step);
-                walk.between(t, step, from, to, metAfter, kMostHalvings);
-                if ((n + 1) % kStepsPerSample == 0 || n + 1 == steps) walk.sample(t + step, to);
-                from = to;
+            for (int part = 0; part < 3; ++part) { // faint, not, faint
+                const double length = ends[part + 1] - ends[part];
+                if (!(length > 0)) continue;
+                if (part == 1)
+                    walk.leaveFaint();
+                else
+                    walk.enterFaint(clipping.density);
+                const auto steps = static_cast<std::size_t>(std::ceil(length / g.d0() * kStepsPerD0));
+                const double step = length / static_cast<double>(steps);
+                for (std::size_t n = 0; n < steps; ++n) {
+                    const double t = ends[part] + static_cast<double>(n) * step;
+                    const Interpolated to = metAfter(t + step);
+                    walk.between(t, step, from, to, metAfter, kMostHalvings);
+                    if ((n + 1) % kStepsPerSample == 0 || n + 1 == steps) walk.sample(t + step, to);
+                    from = to;
+                }
             }
         },
         volume.samples());

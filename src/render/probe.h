@@ -24,12 +24,12 @@ struct ProbeRun {
 };
 
 struct RayProbe {
-    bool hit = false;                 ///< the ray meets what is left of the box; otherwise there is nothing below
+    bool hit = false;                 ///< the ray meets what is drawn of the box; otherwise there is nothing below
     Vec3 entry{0}, exit{0};           ///< world
     std::vector<ProbeSample> samples; ///< d0/2 apart at most, from entry to exit
     std::vector<ProbeRun> runs;       ///< from entry to exit, without gaps
     std::vector<double> shares;       ///< ∫Tτ of each feature; shares + rest = alpha
-    double rest = 0;                  ///< of what is in no feature
+    double rest = 0;                  ///< of what is in no feature, what is faint among it
     double alpha = 0;                 ///< 1 − exp(−∫τ)
     Rgb color;                        ///< of the pixel, straight; black where alpha is 0
     int feature = -1;                 ///< the one of the largest share, the first of equal ones; −1: all are 0

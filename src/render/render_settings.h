@@ -74,6 +74,10 @@ struct RenderSettings {
     /// How often a step may be halved until the next time would make it smaller than finestInD0.
     int halvings() const;
     double smallestStep() const; ///< that any samples have, in d0
+    /// Whether the faint rest is drawn: in mode Composite alone.
+    bool drawsFaint() const {
+        return mode == RenderMode::Composite && !clipping.rest.isNone() && clipping.rest.density > 0;
+    }
     bool operator==(const RenderSettings&) const = default;
     /// The feature of `tf` that is drawn alone; null: all are drawn. Throws UsageError where it has none of this index.
     const Feature* featureAlone(const TransferFunction& tf) const;

@@ -171,7 +171,7 @@ void lay(const Tint& over, float* pixel) {
 void layOverlay(Image& image, const Geometry& g, const SlicePlane& plane, const SliceSettings& settings) {
     const Overlay& overlay = *settings.overlay;
     const std::vector<Tint> tint = tints(overlay.tf, 1);
-    const std::vector<VoxelPlane> cuts = planesInVoxels(settings.clipping, g);
+    const std::vector<VoxelPlane> cuts = planesInVoxels(settings.clipping.part(), g);
     const Window intensityOf(overlay.volume->range(), 0);
     const Vec3 lo = g.voxelBoxMin(), hi = g.voxelBoxMax();
     parallelFor(static_cast<std::size_t>(plane.height), [&](std::size_t row) {
@@ -289,7 +289,7 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
     std::vector<Between> columns;
     for (int x = 0; x < plane.width; ++x)
         columns.push_back(around(view.right, voxelAtPixel(g, plane, {x + 0.5, 0.5})[view.right]));
-    const std::vector<VoxelPlane> cuts = planesInVoxels(settings.clipping, g);
+    const std::vector<VoxelPlane> cuts = planesInVoxels(settings.clipping.part(), g);
     const std::vector<Tint> tint = tints(tf, settings.tfStrength);
     const auto greyShown = static_cast<float>(std::min(1.0, 2 * (1 - settings.tfStrength)));
     const bool allValid = volume.invalidCount() == 0;

@@ -1,5 +1,6 @@
 // docs/method.md, "Visibility", written out: for each voxel one straight line toward the eye, double precision, steps
 // of at most d0/16.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -128,13 +129,13 @@ private:
     /// What the lines toward the eye need to know, in voxel coordinates.
     struct Lines {
         const Camera& camera;
-        std::vector<VoxelPlane> planes;
+        VoxelClipping clipping;
         Mat3 worldFromIndex, indexFromWorld;
         Vec3 eye;
     };
     Lines linesOf(const View& view) const {
         const Geometry& g = m_volume->geometry();
-        return {view.camera, planesInVoxels(view.clipping, g), g.worldFromIndex(), g.indexFromWorld(),
+        return {view.camera, clippingInVoxels(view.clipping, g), g.worldFromIndex(), g.indexFromWorld(),
                 g.voxelFromWorld(view.camera.eye)};
     }
 
@@ -173,8 +174,9 @@ private:
     }
 
     /// take(s, d) for each sample from d0/2 in front of `centre` to where the line toward the eye leaves the box or
-    /// meets a clip plane or the eye: s the intensity, d the path that it stands for in units of d0. Until take() says
-    /// false. What is left of the volume is convex, so that a line that has left it does not come back.
+    /// meets a clip plane or the eye: s the intensity, d the path that it stands for in units of d0; what is faint
+    /// counts as FaintRest says. Until take() says false. What is left of the volume is convex, and so is what is not
+    /// faint: a line that has left it does not come back.
     template <class Take>
     void forEachSample(const Lines& lines, const Vec3& centre, const Take& take) const {
         const double d0 = m_volume->geometry().d0();
@@ -186,16 +188,20 @@ private:
             end = glm::length(lines.worldFromIndex * (lines.eye - centre));
             ray.direction = (lines.eye - centre) / end;
         }
-        RayInterval inside = intersectBox(ray, m_volume->geometry());
-        cut(inside, ray, lines.planes);
-        const double length = std::min(end, inside.exit) - d0 / 2;
+        RayInterval left = intersectBox(ray, m_volume->geometry());
+        cut(left, ray, lines.clipping.cut);
+        RayInterval clear = left;
+        cut(clear, ray, lines.clipping.faint);
+        const double length = std::min(end, left.exit) - d0 / 2;
         if (!(length > 0)) return;
         const int steps = static_cast<int>(std::ceil(length / d0 * m_stepsPerD0));
         const double step = length / steps;
         for (int n = 0; n < steps; ++n) {
-            const Vec3 p = ray.origin + ray.direction * (d0 / 2 + (n + 0.5) * step);
-            const Interpolated s = interpolate(m_intensity, m_valid, p);
-            if (s.validShare > 0 && !take(s.value, s.validShare * step / d0)) return;
+            const double from = d0 / 2 + n * step;
+            const Interpolated s = interpolate(m_intensity, m_valid, ray.origin + ray.direction * (from + 0.5 * step));
+            const double within = std::clamp((clear.exit - from) / step, 0.0, 1.0);
+            const double path = s.validShare * step / d0 * thinned(lines.clipping.density, within);
+            if (s.validShare > 0 && !take(s.value, path)) return;
         }
     }
 

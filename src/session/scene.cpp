@@ -6,6 +6,7 @@
 
 #include "engines/engines.h"
 #include "optimize/views/opening_view.h"
+#include "render/holder.h"
 #include "render/published_engine.h"
 #include "session/scene_data.h"
 #include "tf/color_maps.h"
@@ -217,14 +218,26 @@ Camera openingViewOf(const Scene& scene, const JobControl& job) {
     return openingView(*scene.volume, scene.proposal->tf, {job.stop, {}});
 }
 
-FirstSight tunedFrom(const Scene& scene, const Camera& home, const JobControl& job) {
-    return withOpacitiesForView(*scene.volume, *scene.proposal, scene.tf, home, {job.stop, {}});
+FirstSight tunedFrom(const Scene& scene, const Camera& home, const std::optional<Holder>& holder,
+                     const JobControl& job) {
+    View view = home;
+    if (holder) view.clipping.rest.within = holder->without;
+    FirstSight sight = withOpacitiesForView(*scene.volume, *scene.proposal, scene.tf, view, {job.stop, {}});
+    if (holder) sight.rest = faintRest(*holder, *scene.volume, sight.tf, {job.stop, {}});
+    return sight;
+}
+
+/// What the object lies on.
+std::optional<Holder> holderOf(const Scene& scene, const JobControl& job) {
+    return findHolder(*scene.volume, scene.proposal->tf, {job.stop, {}});
 }
 
 } // namespace
 
 FirstSight tunedStart(const Scene& scene, const JobControl& job) {
-    return tunedFrom(scene, openingViewOf(scene, job), job);
+    std::optional<Holder> holder;
+    if (!scene.session.clipping->rest.isNone()) holder = holderOf(scene, job);
+    return tunedFrom(scene, openingViewOf(scene, job), holder, job);
 }
 
 void setStart(Session& session, const FirstSight& start) {
@@ -235,6 +248,7 @@ void setStart(Session& session, const FirstSight& start) {
     const bool wanted =
         std::any_of(targets.begin(), targets.end(), [&](double t) { return std::abs(t - targets.front()) > 1e-9; });
     if (!start.shares.empty() && !wanted) session.goals.set(withTargets(*session.goals, tf, start.shares));
+    if (!start.rest.isNone()) session.clipping.edit([&](Clipping& c) { c.rest = start.rest; });
 }
 
 AutomaticStart automaticStart(const Scene& scene, const View& view, const JobControl& job) {
@@ -321,10 +335,23 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     // Under a transfer function that somebody gives it is the box that fits, so that the figures of several compare.
     std::optional<Camera> home;
     if (scene.proposal) home = openingViewOf(scene, job);
+    std::optional<Holder> holder;
+    const bool findsHolder = scene.proposal && scene.session.clipping->rest.isNone() && inputs.holder != 1.0;
+    if (findsHolder) holder = holderOf(scene, job);
     if (inputs.start == SceneInputs::Start::Tuned && scene.proposal) {
-        setStart(scene.session, tunedFrom(scene, *home, job));
+        setStart(scene.session, tunedFrom(scene, *home, holder, job));
         resolveTf(scene);
+    } else if (holder) {
+        const FaintRest rest = faintRest(*holder, *scene.volume, scene.tf, {job.stop, {}});
+        scene.session.clipping.edit([&](Clipping& c) { c.rest = rest; });
     }
+    if (inputs.holder && !scene.session.clipping->rest.isNone())
+        scene.session.clipping.edit([&](Clipping& c) {
+            if (*inputs.holder < 1)
+                c.rest.density = *inputs.holder;
+            else
+                c.rest = {};
+        });
     if (proposesFirst) {
         Session mapped = scene.session;
         mapped.hsb = mapping;
@@ -511,6 +538,7 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height) {
     input.settings.onlyFeature = -1;
     input.settings.ground.reset();
     input.settings.overlay.reset();
+    input.settings.clipping.rest.density = 0; // in no feature
     return input;
 }
 

@@ -73,6 +73,9 @@ struct SceneInputs {
     /// What a volume without transfer function gets: the automatic start; the same before its opacities are tuned, for
     /// those who show it first (see tunedStart()); or tents:3 over all values, for those who need none.
     enum class Start { Tuned, Proposed, Tents } start = Start::Tuned;
+    /// With an automatic start what the object lies on is made faint; or it is this dense, [0, 1]: 0 leaves it out, 1
+    /// leaves it as it is.
+    std::optional<double> holder;
 };
 
 /// From where the inputs look at a volume: `namedView`, else `camera`, else `view`, else the session's camera, else the
@@ -92,8 +95,8 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job = {});
 /// The transfer function of a scene that has a proposal, with opacities for the home view, whatever its camera is: a
 /// volume has one automatic start. Throws Cancelled.
 FirstSight tunedStart(const Scene& scene, const JobControl& job = {});
-/// Puts a start into a session: its transfer function, and the shares that it aims at as targets, where none of its
-/// features has one.
+/// Puts a start into a session: its transfer function, the shares that it aims at as targets, where none of its
+/// features has one, and what the object lies on.
 void setStart(Session& session, const FirstSight& start);
 
 /// The automatic start of a scene's data, whatever its window and transfer function are.

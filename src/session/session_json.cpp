@@ -566,24 +566,41 @@ AnnotationChoice toReference(const JsonValue& j) {
     return r;
 }
 
-json fromClipping(const Clipping& c) {
-    json j{{"lo", fromVec(c.lo)}, {"hi", fromVec(c.hi)}};
-    for (const ClipPlane& plane : c.planes)
+json fromPart(const BoxPart& part) {
+    json j{{"lo", fromVec(part.lo)}, {"hi", fromVec(part.hi)}};
+    for (const ClipPlane& plane : part.planes)
         j["planes"].push_back({{"normal", fromVec(plane.normal)}, {"offset", plane.offset}});
     return j;
 }
 
-Clipping toClipping(const JsonValue& j) {
-    Clipping c{toVec(j["lo"], 0, 1), toVec(j["hi"], 0, 1), {}};
+json fromClipping(const Clipping& c) {
+    json j = fromPart(c.part());
+    if (c.rest.isNone()) return j;
+    j["rest"] = fromPart(c.rest.within);
+    j["rest"]["density"] = c.rest.density;
+    return j;
+}
+
+BoxPart toPart(const JsonValue& j) {
+    BoxPart part{toVec(j["lo"], 0, 1), toVec(j["hi"], 0, 1), {}};
     if (j.has("planes")) {
         for (const JsonValue& plane : j["planes"].items()) {
-            c.planes.push_back({toWorld(plane["normal"]), plane["offset"].number(-1e30, 1e30)});
-            if (!(glm::length(c.planes.back().normal) > 0)) plane.fail("a clip plane needs a normal that is not 0");
+            part.planes.push_back({toWorld(plane["normal"]), plane["offset"].number(-1e30, 1e30)});
+            if (!(glm::length(part.planes.back().normal) > 0)) plane.fail("a clip plane needs a normal that is not 0");
         }
-        if (c.planes.size() > kMostClipPlanes) j["planes"].fail("these are too many planes");
+        if (part.planes.size() > kMostClipPlanes) j["planes"].fail("these are too many planes");
     }
     for (int a = 0; a < 3; ++a)
-        if (!(c.lo[a] < c.hi[a])) j.fail("a clip interval needs its lower end below its upper one");
+        if (!(part.lo[a] < part.hi[a])) j.fail("a clip interval needs its lower end below its upper one");
+    return part;
+}
+
+Clipping toClipping(const JsonValue& j) {
+    Clipping c;
+    c.setPart(toPart(j));
+    if (!j.has("rest")) return c;
+    c.rest.within = toPart(j["rest"]);
+    c.rest.density = j["rest"]["density"].number(0, 0.999);
     return c;
 }
 

@@ -299,13 +299,14 @@ void turnData(Session& session, const Volume& volume, const std::optional<GridAx
                     ruler.points = boxRuler(ruler.points.front(), ruler.points.back()).points;
             }
         });
-    if (!session.clipping->planes.empty())
+    if (!session.clipping->planes.empty() || !session.clipping->rest.within.planes.empty())
         session.clipping.edit([&](Clipping& clipping) {
-            for (ClipPlane& plane : clipping.planes) {
-                const Vec3 on = moved(plane.normal * (plane.offset / glm::dot(plane.normal, plane.normal)));
-                plane.normal = glm::transpose(glm::inverse(turn)) * plane.normal;
-                plane.offset = glm::dot(plane.normal, on);
-            }
+            for (std::vector<ClipPlane>* planes : {&clipping.planes, &clipping.rest.within.planes})
+                for (ClipPlane& plane : *planes) {
+                    const Vec3 on = moved(plane.normal * (plane.offset / glm::dot(plane.normal, plane.normal)));
+                    plane.normal = glm::transpose(glm::inverse(turn)) * plane.normal;
+                    plane.offset = glm::dot(plane.normal, on);
+                }
         });
 }
 

@@ -1,9 +1,11 @@
 // --clip: the same half-spaces for pictures and figures, in every command that looks.
 #include <algorithm>
+#include <cmath>
 
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"
+#include "image_io/image_file.h"
 #include "session/scene.h"
 #include "session/session_json.h"
 #include "session/workspace.h"
@@ -62,11 +64,73 @@ TEST_CASE("figures of an oblique clip are those of the reference engine", "[cli]
         CHECK(told[i]["visibility"] == Approx(expected.features[i].visibility).margin(1e-12));
         CHECK(told[i]["vws"] == Approx(expected.features[i].vws).margin(1e-12));
     }
+    // Something faint besides: what lies behind it is dimmed.
+    inputs.session.clipping.edit([](Clipping& c) { c.rest = {{{0, 0.3, 0}, {1, 1, 1}, {}}, 0.3}; });
+    writeSession(openScene(inputs).session, w.path("faint.pellucid.json").string());
+    const json faint = w.json({"measure", "--session", "faint.pellucid.json", "--view", "40,25"})["features"];
+    CHECK(faint != told);
+    const Measures dimmed = workspace.measure(measureInput(openScene(inputs)));
+    for (std::size_t i = 0; i < faint.size(); ++i)
+        CHECK(faint[i]["visibility"] == Approx(dimmed.features[i].visibility).margin(1e-12));
+    CHECK(w.json({"measure", "--session", "faint.pellucid.json", "--view", "40,25", "--holder", "1"})["features"] ==
+          told);
+    inputs.session.clipping.edit([](Clipping& c) { c.rest = {}; });
     // The command line's clips take the place of the session's; without them the session's hold.
     writeSession(openScene(inputs).session, w.path("a.pellucid.json").string());
     const Words bySession{"measure", "--session", "a.pellucid.json", "--view", "40,25"};
     CHECK(w.json(bySession)["features"] == told);
     CHECK(w.json(bySession + Words{"--clip", "x:0:1"})["features"] == measured(w, {}));
+}
+
+TEST_CASE("a board under an object is faint, and in no figure", "[cli][clip]") {
+    const Workshop w;
+    std::string bytes;
+    for (int k = 0; k < 40; ++k)
+        for (int j = 0; j < 40; ++j)
+            for (int i = 0; i < 40; ++i) {
+                const bool board = j < 3 && i >= 2 && i < 38;
+                const bool ball = std::hypot(i - 19.5, j - 14.5, k - 19.5) < 12;
+                bytes.push_back(static_cast<char>(board || ball ? 150 + 20 * ((i + j + k) % 2) : (i * j + k) % 5));
+            }
+    w.write("onboard.raw", bytes);
+    const Words data{"onboard.raw", "--raw", "40,40,40,u8"};
+    // Of the features, and whether a note says that something is faint.
+    const auto measured = [&](const Words& options, bool told) {
+        const Outcome o = w.run(Words{"measure"} + data + Words{"--engine", "cpu", "--json"} + options);
+        INFO(o.err);
+        REQUIRE(o.status == 0);
+        CHECK((o.err.find("--holder 1") != std::string::npos) == told);
+        return json::parse(o.out)["features"];
+    };
+    const json faint = measured({}, true), gone = measured({"--holder", "0"}, false);
+    const json counted = measured({"--holder", "1"}, false);
+    // It lies behind the ball, and hides next to nothing of it; but where it counts there is more of its values.
+    const auto apart = [&](const json& a, const json& b) {
+        return std::abs(a[0]["visibility"].get<double>() - b[0]["visibility"].get<double>());
+    };
+    CHECK(apart(gone, faint) < 1e-4);
+    CHECK(apart(counted, faint) > 1e-3);
+    const auto alpha = [&](const Words& options) { // on average; the board is larger than the ball
+        const Words picture{"--view", "0,0", "--size", "40x40", "--background", "transparent", "--out", "a.png"};
+        REQUIRE(w.run(Words{"render", "--engine", "cpu"} + data + options + picture).status == 0);
+        const Image image = readImage(w.path("a.png").string());
+        double sum = 0;
+        for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += static_cast<double>(image.rgba[i]);
+        return sum / (40 * 40);
+    };
+    const double usual = alpha({}), none = alpha({"--holder", "0"}), whole = alpha({"--holder", "1"});
+    CHECK(none > 0.05);
+    CHECK(usual > none + 0.02);
+    CHECK(whole > usual + 0.02);
+    // Whoever has a transfer function gets what it draws.
+    const Outcome tents = w.run(Words{"measure"} + data + Words{"--tf", "tents:3", "--holder", "0"});
+    CHECK(tents.status == 2);
+    CHECK(tents.err.find("automatic start") != std::string::npos);
+    const json found = w.json(Words{"propose"} + data)["holder"];
+    CHECK(found["along"] == "z");
+    CHECK(found["toward"] == json{0.0, -1.0, 0.0});
+    CHECK(found["density"] > 0);
+    CHECK(found["density"] < 0.5);
 }
 
 TEST_CASE("what is cut away has no visibility", "[cli][clip]") {
@@ -117,4 +181,7 @@ TEST_CASE("wrong clips are wrong usage", "[cli][clip][errors]") {
     fails({"half"}, "x:A:B");
     fails({"x:0:0.2", "x:0.5:1"}, "let them overlap");
     fails(Words(7, "1,0,0,3"), "at most 6");
+    const Outcome tooDense = w.run(Words{"measure"} + kSmall + Words{"--holder", "1.5"});
+    CHECK(tooDense.status == 2);
+    CHECK(tooDense.err.find("--holder") != std::string::npos);
 }

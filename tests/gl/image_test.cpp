@@ -125,21 +125,37 @@ TEST_CASE("gl and cpu draw the same picture", "[gl]") {
     // textures round to 1/256, and entries of tables: 0.0009 at most and 0.0001 on average on llvmpipe. Ten times that
     // is still far from any other picture.
     // Shading divides by the gradient's length: where that is small the picture hangs on the last bits.
-    const std::vector<Case> cases{{"plain", [](RenderSettings&) {}, 0.03, 1.0 / 255},
-                                  {"transparent", [](RenderSettings& s) { s.background = {}; }, 0.01, 0.001},
-                                  {"background",
-                                   [](RenderSettings& s) {
-                                       s.background = Rgb{0.2, 0.7, 1};
-                                   },
-                                   0.03, 1.0 / 255},
-                                  {"shading", [](RenderSettings& s) { s.light.on = true; }, 0.1, 1.0 / 255},
-                                  {"clipped",
-                                   [](RenderSettings& s) {
-                                       s.clipping.lo = {0.1, 0.3, 0.2};
-                                       s.clipping.hi = {0.8, 1, 0.75};
-                                   },
-                                   0.03, 1.0 / 255},
-                                  {"one feature", [](RenderSettings& s) { s.onlyFeature = 1; }, 0.03, 1.0 / 255}};
+    const std::vector<Case> cases{
+        {"plain", [](RenderSettings&) {}, 0.03, 1.0 / 255},
+        {"transparent", [](RenderSettings& s) { s.background = {}; }, 0.01, 0.001},
+        {"background",
+         [](RenderSettings& s) {
+             s.background = Rgb{0.2, 0.7, 1};
+         },
+         0.03, 1.0 / 255},
+        {"shading", [](RenderSettings& s) { s.light.on = true; }, 0.1, 1.0 / 255},
+        {"clipped",
+         [](RenderSettings& s) {
+             s.clipping.lo = {0.1, 0.3, 0.2};
+             s.clipping.hi = {0.8, 1, 0.75};
+         },
+         0.03, 1.0 / 255},
+        {"faint rest",
+         [](RenderSettings& s) {
+             s.clipping.hi.y = 0.9;
+             s.clipping.planes = {{{1, 1, 0}, 60}};
+             s.clipping.rest.within.lo = {0.1, 0.3, 0.2};
+             s.clipping.rest.within.hi = {0.8, 1, 0.75};
+             s.clipping.rest.within.planes = {{{1, 0.3, 0.2}, 30}};
+             s.clipping.rest.density = 0.15;
+         },
+         0.03, 1.0 / 255},
+        {"rest left out",
+         [](RenderSettings& s) {
+             s.clipping.rest.within = {{0.1, 0.3, 0.2}, {0.8, 1, 0.75}, {{{1, 0.3, 0.2}, 30}}};
+         },
+         0.03, 1.0 / 255},
+        {"one feature", [](RenderSettings& s) { s.onlyFeature = 1; }, 0.03, 1.0 / 255}};
     const TransferFunction tf = tents(3, 0.25);
     for (const auto& [view, camera] : views)
         for (const Case& c : cases) {

@@ -39,7 +39,7 @@ TEST_CASE("what clipping leaves has the corners that its planes make", "[kept]")
         CHECK((std::abs(corner.x - 1.5) < 0.01 || std::abs(corner.x - 3.5) < 0.01));
         CHECK((std::abs(corner.y + 0.5) < 0.01 || std::abs(corner.y - 1) < 0.01));
     }
-    CHECK_FALSE(gl::keptVoxels(geometry, planesInVoxels({{}, {1, 1, 1}, {{{1, 0, 0}, -3}}}, geometry)));
+    CHECK_FALSE(gl::keptVoxels(geometry, planesInVoxels(BoxPart{{}, {1, 1, 1}, {{{1, 0, 0}, -3}}}, geometry)));
 }
 
 TEST_CASE("a picture has a pixel per voxel and a layer per d0 where the view is along an axis", "[layered]") {
@@ -99,6 +99,7 @@ TEST_CASE("the slices engine measures affine grids and what clipping leaves", "[
     if (!haveGl()) return;
     test::checkAffine(slices, 20, kSlicesTolerances);
     test::checkClipping(slices, 20, kSlicesTolerances);
+    test::checkFaintRest(slices, 20, kSlicesTolerances);
     test::checkOrientations(slices, 0.01);
 }
 

@@ -141,6 +141,7 @@ TEST_CASE("gl measures what clipping leaves", "[gl][clip]") {
     const auto make = [](auto volume) { return makeGlEngine(volume); };
     test::checkClippedBlock(make);
     test::checkClipping(make, 30);
+    test::checkFaintRest(make, 20);
     test::checkClipping([](auto volume) { return makeGlEngine(volume, Quality::High); }, 10, test::kHighTolerances);
 }
 

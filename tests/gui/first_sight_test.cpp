@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QSettings>
@@ -89,7 +90,7 @@ TEST_CASE("values far off are said to lie beyond, and a click brings the full ra
     CHECK(litShare(w.picture()) == Approx(litShare(full)).margin(0.1)); // values keep their opacity
 }
 
-TEST_CASE("a board on which an object lies is behind it, and a click leaves it out", "[first sight]") {
+TEST_CASE("a board on which an object lies is faint behind it, and a click leaves it out", "[first sight]") {
     const TempFolder folder;
     std::string bytes;
     for (int k = 0; k < 40; ++k)
@@ -110,21 +111,38 @@ TEST_CASE("a board on which an object lies is behind it, and a click leaves it o
     const Camera opened = w.document().camera();
     CHECK(opened.forward().y < 0.1);
     REQUIRE(noticeText(w).contains("board"));
-    CHECK(w.services().store().session().clipping->isNone());
+    const Clipping faint = *w.services().store().session().clipping;
+    CHECK(faint.isNone());
+    CHECK(faint.rest.within.lo.y >= 3.0 / 40);
+    CHECK(faint.rest.within.lo.y <= 5.0 / 40);
+    CHECK(faint.rest.density > 0);
+    CHECK(faint.rest.density < 0.5);
+    CHECK(w.services().store().isClean()); // nobody's work
+    auto& density = w.child<QDoubleSpinBox>("holderDensity");
+    CHECK(density.value() == Approx(100 * faint.rest.density).margin(0.05));
 
     QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
     w.settle();
     CHECK(w.services().store().undoText() == "Leave out the holder");
     const Clipping cut = *w.services().store().session().clipping;
-    CHECK(cut.lo.y >= 3.0 / 40);
-    CHECK(cut.lo.y <= 5.0 / 40);
-    CHECK_FALSE(w.document().camera() == opened); // what is left fills the picture
-    REQUIRE(noticeText(w).contains("cut away"));
+    CHECK(cut.rest.density == 0);
+    CHECK(cut.rest.within == faint.rest.within);
+    REQUIRE(noticeText(w).contains("left out"));
     QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
     w.settle();
-    CHECK(w.services().store().session().clipping->isNone());
+    CHECK(w.services().store().session().clipping->rest.isNone());
     w.child<QAction>("undoAction").trigger();
     CHECK(*w.services().store().session().clipping == cut);
+    w.child<QAction>("undoAction").trigger();
+    CHECK(*w.services().store().session().clipping == faint);
+
+    // By number; clipping comes and goes beside it.
+    density.setValue(20);
+    CHECK(w.services().store().session().clipping->rest.density == Approx(0.2));
+    w.child<QDoubleSpinBox>("clipXHi").setValue(60);
+    w.child<QAction>("resetClipAction").trigger();
+    CHECK(w.services().store().session().clipping->rest.density == Approx(0.2));
+    CHECK(w.services().store().session().clipping->isNone());
 }
 
 TEST_CASE("Home goes back to the view that a volume opened with", "[first sight]") {

@@ -65,11 +65,13 @@ TEST_CASE("blocks on ranks measure what one process measures", "[ranks]") {
     int different = 0;
     double most = 0;
     for (std::uint32_t number = 0; number < 48; ++number) {
-        const RandomCase c = randomCase(number, 1.5, {number % 3 == 1, number % 4 == 2});
+        const RandomCase c = randomCase(number, 1.5, {number % 3 == 1, number % 4 >= 2, number % 4 == 3});
         INFO(c.describe());
         const WeightFields weights = saliencyFields(*c.volume, c.tf, {});
         const auto whole = makeDraftEngine(c.volume);
         const FeatureSums expected = whole->sums(c.view(), {&c.tf, 1}, &weights)[0];
+        // Behind a faint rest that is dense there may be nothing but what rays have been given up for.
+        if (!c.clipping.rest.isNone() && expected.allVisibility < 1) continue;
         double ofCase = 0;
         for (const int count : {1, 2, 3, 8})
             onBlocks(c, count, weights,
@@ -92,7 +94,7 @@ TEST_CASE("blocks on ranks measure what one process measures", "[ranks]") {
 TEST_CASE("eight candidates and derivatives on ranks are those of one process", "[ranks]") {
     int different = 0;
     for (std::uint32_t number = 100; number < 124; ++number) {
-        const RandomCase c = randomCase(number, 1.5, {number % 3 == 1, number % 4 == 2});
+        const RandomCase c = randomCase(number, 1.5, {number % 3 == 1, number % 4 >= 2, number % 4 == 3});
         INFO(c.describe());
         const WeightFields weights = saliencyFields(*c.volume, c.tf, {});
         const auto whole = makeDraftEngine(c.volume);

@@ -432,15 +432,19 @@ TEST_CASE("a turn or mirroring of the whole world changes no figure", "[visibili
     }
 }
 
-TEST_CASE("what is clipped away is neither seen nor hides, as the reference has it", "[visibility][cpu][clip]") {
-    for (std::uint32_t n = 0; n < 36; ++n) {
+TEST_CASE("what is clipped away is neither seen nor hides, and what is faint hides as far as it is drawn",
+          "[visibility][cpu][clip]") {
+    for (std::uint32_t n = 0; n < 72; ++n) {
         Random random(n + 100);
         RandomCase c = randomCase(n);
         if (n % 2 == 1) moveBy(randomMap(random, 0.2), c);
-        const View view(c.camera, randomClipping(random, c.volume->geometry()));
-        INFO(c.describe());
+        View view(c.camera, randomClipping(random, c.volume->geometry()));
+        // In so few voxels boxes leave coarse steps of the reference off by 0.03 of W.
+        if (n >= 36) view.clipping.rest = {view.clipping.part(), random.between(0.02, 0.6)};
+        if (n >= 36) view.clipping.setPart(randomClipping(random, c.volume->geometry()).part());
+        INFO(c.describe() << ", density of the rest " << view.clipping.rest.density);
         const WeightFields weights = saliencyFields(*c.volume, c.tf);
-        const auto engine = makeCpuEngine(c.volume), oracle = makeReferenceEngine(c.volume, 8);
+        const auto engine = makeCpuEngine(c.volume), oracle = makeReferenceEngine(c.volume, n >= 36 ? 48 : 8);
         const Disagreement d = compare(*oracle, *engine, view, c.tf, weights);
         CAPTURE(n, d.visibilityRms, d.visibility, d.vws);
         CHECK(d.visibilityRms < kNormalTolerances.visibilityRms);

@@ -54,6 +54,39 @@ TEST_CASE("clipping shortens the path", "[image]") {
           Approx(1 - std::pow(0.9, 5)).margin(1e-3));
 }
 
+TEST_CASE("what an object lies on can be drawn faintly", "[image][clip]") {
+    // Ten voxels of alpha 0.1: five whole, five of which 0.2 of the optical depth counts: as many as six.
+    const auto volume = slab({12, 10, 12}, 0.5);
+    Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    camera.height = 4;
+    RenderSettings settings = small();
+    FaintRest& rest = settings.clipping.rest;
+    rest.density = 0.2;
+    const auto renderer = makeCpuRenderer(volume);
+    const auto alphaIs = [&](double expected) {
+        CHECK(renderer->render(camera, homogeneous(0.1), settings).pixel(15, 10)[3] == Approx(expected).margin(1e-3));
+        CHECK(renderer->preview(camera, homogeneous(0.1), settings, 1).pixel(15, 10)[3] ==
+              Approx(expected).margin(0.01));
+    };
+    for (const bool behind : {false, true}) { // the faint half
+        rest.within.lo.y = behind ? 0 : 0.5;
+        rest.within.hi.y = behind ? 0.5 : 1;
+        alphaIs(1 - std::pow(0.9, 6));
+    }
+    // Half of it cut away: 2.5 voxels, or as many as 0.5.
+    settings.clipping.hi.y = 0.75;
+    alphaIs(1 - std::pow(0.9, 5.5));
+    settings.clipping.hi.y = 1;
+    rest.density = 0; // left out
+    alphaIs(1 - std::pow(0.9, 5));
+    // Other modes leave it out: of a half of 1 and a half of 0.5 they show the first alone.
+    const auto halves = volumeFrom(geometryOf({12, 10, 12}), [](int, int j, int) { return j < 5 ? 0.5 : 1; });
+    rest = {{{0, 0, 0}, {1, 0.4, 1}, {}}, 0.5};
+    settings.mode = RenderMode::Mip;
+    CHECK(makeCpuRenderer(halves)->render(camera, homogeneous(0.1), settings).pixel(15, 10)[0] ==
+          Approx(0.5).margin(1e-3));
+}
+
 TEST_CASE("one feature can be drawn alone", "[image]") {
     // A block of intensity 1/6 (feature 1 of three tents) in front of one of 5/6 (feature 3).
     const auto volume = volumeFrom(geometryOf({8, 8, 8}), [](int, int j, int) { return j < 4 ? 1.0 / 6 : 5.0 / 6; });
@@ -113,4 +146,6 @@ TEST_CASE("impossible settings are refused", "[image]") {
     refused([](RenderSettings& s) { s.stepInD0 = 0; });
     refused([](RenderSettings& s) { s.finestInD0 = 0.001; });
     refused([](RenderSettings& s) { s.clipping.lo.x = 1; });
+    refused([](RenderSettings& s) { s.clipping.rest.density = 1; });
+    refused([](RenderSettings& s) { s.clipping.rest.within.hi.z = 0; });
 }

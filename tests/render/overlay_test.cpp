@@ -93,7 +93,7 @@ struct Component {
 /// ends of boxes and at planes may be off by half a step: by 0.5·0.73/250 = 0.0015 of alpha at the largest τ below.
 Image reference(const Component& first, const Component& second, const Camera& camera, const RenderSettings& settings) {
     Image image(settings.width, settings.height);
-    const std::vector<VoxelPlane> planes = planesInVoxels(settings.clipping, first.geometry);
+    const VoxelClipping clipping = clippingInVoxels(settings.clipping, first.geometry);
     const double step = first.geometry.d0() / 250, reach = first.geometry.radius() + second.geometry.radius();
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
@@ -103,11 +103,17 @@ Image reference(const Component& first, const Component& second, const Camera& c
             Vec3 color(0);
             for (double t = middle - reach; t < middle + reach; t += step) {
                 const Vec3 world = ray.origin + (t + step / 2) * ray.direction;
-                bool kept = true;
-                for (const VoxelPlane& plane : planes) kept &= plane.beyond(first.geometry.voxelFromWorld(world)) <= 0;
+                bool kept = true, faint = false;
+                const Vec3 voxel = first.geometry.voxelFromWorld(world);
+                for (const VoxelPlane& plane : clipping.cut) kept &= plane.beyond(voxel) <= 0;
+                for (const VoxelPlane& plane : clipping.faint) faint |= plane.beyond(voxel) > 0;
                 if (!kept) continue;
-                const auto [tauA, a] = first.at(world);
-                const auto [tauB, b] = second.at(world);
+                auto [tauA, a] = first.at(world);
+                auto [tauB, b] = second.at(world);
+                if (faint) { // the overlay has nothing there
+                    tauA *= clipping.density;
+                    tauB = 0;
+                }
                 if (tauA + tauB == 0) continue;
                 const double seen = clear * (1 - std::exp(-(tauA + tauB) * step));
                 color += seen / (tauA + tauB) * (tauA * Vec3(a.r, a.g, a.b) + tauB * Vec3(b.r, b.g, b.b));
@@ -187,6 +193,7 @@ TEST_CASE("the picture of two volumes is that of two media along each ray", "[ov
             RenderSettings settings = transparent(12, 12);
             settings.overlay = overlayOf(b, first, tfB);
             if (holes) settings.clipping.lo = {0.3, 0, 0}, settings.clipping.planes = {{{0.2, 1, 0.4}, 4}};
+            if (peak > 0.1) settings.clipping.rest = {{{0, 0, 0.2}, {1, 1, 1}, {{{-0.4, 1, 0.4}, 6}}}, 0.3};
             const Component one(*a, first, tfA), other(*b, settings.overlay->geometry, tfB);
             for (const Projection projection : {Projection::Orthographic, Projection::Perspective}) {
                 const Camera camera = cameraFromView(first, 40, 25, 1, projection);
@@ -195,6 +202,22 @@ TEST_CASE("the picture of two volumes is that of two media along each ray", "[ov
                                reference(one, other, camera, settings)) < 0.004);
             }
         }
+}
+
+TEST_CASE("a picture with a faint rest is that of a medium thinned there", "[overlay][clip]") {
+    // The reference with an overlay in which nothing is.
+    const Geometry g = anatomyGrid();
+    const auto volume = roughOn(g, 3), nothing = volumeFrom(g, [](int, int, int) { return 0.0; });
+    const TransferFunction tf = risingTo(0.4, {0.2, 0.5, 1});
+    const Component one(*volume, g, tf), other(*nothing, g, homogeneous(0));
+    RenderSettings settings = transparent(24, 24);
+    settings.clipping.hi.x = 0.9;
+    settings.clipping.rest = {{{0.3, 0, 0.2}, {1, 0.8, 1}, {{{0.2, 1, 0.4}, 4}}}, 0.25};
+    for (const Projection projection : {Projection::Orthographic, Projection::Perspective}) {
+        const Camera camera = cameraFromView(g, 40, 25, 1, projection);
+        CHECK(distance(makeCpuRenderer(volume)->render(camera, tf, settings), reference(one, other, camera, settings)) <
+              0.004);
+    }
 }
 
 TEST_CASE("it does not matter which of two volumes lies over which", "[overlay]") {

@@ -100,12 +100,32 @@ TEST_CASE("both sides of a step count for their own part, and what is in no feat
     CHECK(p.color.g == Approx(p.rest / p.alpha).margin(1e-9));
 }
 
+TEST_CASE("what is faint is in no feature", "[probe]") {
+    // Along y 10 planes of α = 0.2, all in one feature; of the first four 0.25 of the optical depth counts.
+    const auto volume = slab({5, 10, 5}, 0.5);
+    View view(lookingAlong(volume->geometry(), {0, 1, 0}));
+    view.clipping.rest = {{{0, 0.4, 0}, {1, 1, 1}, {}}, 0.25};
+    const RayProbe p = probeMiddle(*volume, homogeneous(0.2), view);
+    CHECK(p.rest == Approx(1 - 0.8).margin(1e-3)); // (1 − 0.2)^(4 · 0.25)
+    CHECK(p.shares[0] == Approx(0.8 * (1 - std::pow(0.8, 6))).margin(1e-3));
+    CHECK(p.alpha == Approx(1 - std::pow(0.8, 7)).margin(1e-3));
+    CHECK(glm::length(p.exit - p.entry) == Approx(10));
+    REQUIRE(p.runs.size() == 2);
+    CHECK(p.runs[0].feature == -1);
+    CHECK(p.runs[0].end == Approx(4).margin(1e-6));
+    CHECK(p.runs[1].feature == 0);
+    // Left out, it is not on the ray.
+    view.clipping.rest.density = 0;
+    CHECK(glm::length(probeMiddle(*volume, homogeneous(0.2), view).exit -
+                      probeMiddle(*volume, homogeneous(0.2), view).entry) == Approx(6));
+}
+
 TEST_CASE("shares and rest make the picture's alpha", "[probe]") {
     // Rays of the cpu renderer read intensities as codes and sum over a table: the two meet within 1/255.
     constexpr int kWidth = 23, kHeight = 17;
     int visible = 0;
     for (std::uint32_t number = 0; number < 30; ++number) {
-        const RandomCase c = randomCase(number, 0.6, {number % 3 == 1, number % 2 == 1});
+        const RandomCase c = randomCase(number, 0.6, {number % 3 == 1, number % 2 == 1, number % 4 == 3});
         INFO(c.describe());
         RenderSettings settings;
         settings.width = kWidth, settings.height = kHeight;

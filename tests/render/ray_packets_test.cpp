@@ -77,6 +77,7 @@ TEST_CASE("leaping over what is transparent changes nothing", "[image]") {
                     settings.stepInD0 = 0.7;
                     settings.jitter = lit;
                     settings.clipping.planes = {{{1, 0.3, 0.2}, 30}};
+                    if (tf.features.size() == 6) settings.clipping.rest = {{{}, {1, 0.6, 1}, {{{1, -1, 0}, 3}}}, 0.2};
                     const Camera camera = cameraFromView(volume->geometry(), 40, 25, 1.2, Projection::Perspective);
                     const Image with = makeCpuRenderer(volume, {0, true})->render(camera, tf, settings),
                                 without = makeCpuRenderer(volume, {0, false})->render(camera, tf, settings);

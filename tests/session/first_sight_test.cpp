@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "optimize/answer/first_sight.h"
 #include "optimize/views/opening_view.h"
 #include "render/camera_motion.h"
+#include "render/holder.h"
 #include "render/image_renderer.h"
 #include "render/visibility.h"
 #include "session/scene.h"
@@ -64,12 +66,16 @@ Look lookAt(const Volume& data) {
     const Proposal proposal = propose(data);
     const auto volume = std::make_shared<const Volume>(
         data.dataRange().lo < data.dataRange().hi ? data.withRange(proposal.window) : data);
-    const View home(openingView(*volume, proposal.tf));
+    // What an object lies on is faint, and no part of it.
+    const std::optional<Holder> holder = findHolder(*volume, proposal.tf);
+    View home(openingView(*volume, proposal.tf));
+    if (holder) home.clipping.rest.within = holder->without;
     const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, home).tf;
     tf.validate();
     const auto draw = [&](const std::shared_ptr<const Volume>& v, const TransferFunction& t, bool transparent) {
         RenderSettings settings;
         settings.width = settings.height = kPixels;
+        settings.clipping = home.clipping;
         if (transparent)
             settings.background.reset();
         else

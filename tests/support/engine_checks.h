@@ -103,11 +103,19 @@ void checkClipping(const MakeEngine& makeEngine, std::uint32_t cases, const Tole
     checkVariant(makeEngine, {.affine = false, .clipped = true}, cases / 2, allowed);
     checkVariant(makeEngine, {.affine = true, .clipped = true}, cases - cases / 2, allowed);
 }
+/// With a faint rest, clipped besides or not.
+template <class MakeEngine>
+void checkFaintRest(const MakeEngine& makeEngine, std::uint32_t cases, const Tolerances& allowed = kNormalTolerances) {
+    checkVariant(makeEngine, {.affine = false, .clipped = false, .faint = true}, cases / 2, allowed);
+    checkVariant(makeEngine, {.affine = true, .clipped = true, .faint = true}, cases - cases / 2, allowed);
+}
 
 /// A homogeneous block of α, cut across the view: what lies before the plane hides nothing. Seen along +z, kept from
 /// z = c on, the voxel k ≥ c has light left of (1 − α)^(k − ½ − c), from the plane to ½ in front of its centre, or 1
 /// where that point lies before the plane. Voxels exactly on the plane are kept, those before it have none.
-/// Cut behind, the rest stays what it was: v_k = α(1 − α)^k.
+/// Cut behind, the rest stays what it was: v_k = α(1 − α)^k. Where what lies before the plane is faint and keeps a part
+/// r of its optical depth, the light has passed min(k − ½, c) + ½ of it besides: another (1 − α)^(r·that). Of that what
+/// lies before z = 0.5 may be cut away.
 template <class MakeEngine>
 void checkClippedBlock(const MakeEngine& makeEngine) {
     const double alpha = 0.3;
@@ -124,6 +132,11 @@ void checkClippedBlock(const MakeEngine& makeEngine) {
                 std::swap(mirrored.lo.z, mirrored.hi.z);
                 mirrored.lo.z = 1 - mirrored.lo.z;
                 mirrored.hi.z = 1 - mirrored.hi.z;
+                for (ClipPlane& plane : mirrored.rest.within.planes)
+                    plane = {-plane.normal, plane.offset - 6 * plane.normal.z};
+                std::swap(mirrored.rest.within.lo.z, mirrored.rest.within.hi.z);
+                mirrored.rest.within.lo.z = 1 - mirrored.rest.within.lo.z;
+                mirrored.rest.within.hi.z = 1 - mirrored.rest.within.hi.z;
                 view.clipping = mirrored;
             }
             const Grid<float> v = engine->field(view, homogeneous(alpha)).values;
@@ -141,11 +154,31 @@ void checkClippedBlock(const MakeEngine& makeEngine) {
     expect({{0, 0, 3.0 / 7}, {1, 1, 1}, {}}, front(2.5));            // three of seven voxels away
     expect({{}, {1, 1, 1}, {{{0, 0, 1}, 4.0}}},                      // z ≤ 4
            [&](int k) { return k > 4 ? 0.0 : alpha * std::pow(1 - alpha, k); });
+    const auto faintFront = [&](double at, double part, double begin = -0.5) {
+        return [=](int k) {
+            const double clear = std::max(0.0, k - 0.5 - at), faint = std::min(k - 0.5, at) - begin;
+            return k < at ? 0.0 : alpha * std::pow(1 - alpha, clear + part * faint);
+        };
+    };
+    const auto faint = [](const BoxPart& within, double density) {
+        Clipping clipping;
+        clipping.rest = {within, density};
+        return clipping;
+    };
+    expect(faint({{}, {1, 1, 1}, {{{0, 0, -2}, -2 * 2.25}}}, 0.3), faintFront(2.25, 0.3));
+    expect(faint({{0, 0, 3.0 / 7}, {1, 1, 1}, {}}, 0.05), faintFront(2.5, 0.05));
+    expect(faint({{0, 0, 3.0 / 7}, {1, 1, 1}, {}}, 0), front(2.5)); // left out
+    Clipping both = faint({{0, 0, 3.0 / 7}, {1, 1, 1}, {}}, 0.2);
+    both.lo.z = 1.0 / 7;
+    expect(both, faintFront(2.5, 0.2, 0.5));
     const View nothing(lookingAlong(volume->geometry(), {0, 0, 1}), {{}, {1, 1, 1}, {{{0, 0, 1}, -50}}});
     const TransferFunction tf = homogeneous(alpha);
     CHECK(engine->sums(nothing, {&tf, 1}, nullptr)[0].allVisibility == 0);
     const Grid<float> none = engine->field(nothing, tf).values;
     CHECK(std::all_of(none.begin(), none.end(), [](float v) { return v == 0; }));
+    View allFaint(nothing.camera); // in no feature, either
+    allFaint.clipping.rest = {nothing.clipping.part(), 0.5};
+    CHECK(engine->sums(allFaint, {&tf, 1}, nullptr)[0].allVisibility == 0);
 }
 
 /// One anatomy stored in eight orientations, seen by the same camera in the world: two permutations of the axes and

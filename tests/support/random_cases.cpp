@@ -455,6 +455,10 @@ RandomCase randomCase(std::uint32_t number, double size, const Variant& variant)
         c.clipping = randomClipping(more, c.volume->geometry());
         c.volumeKind += " clipped";
     }
+    if (variant.faint) {
+        c.clipping.rest = {randomClipping(more, c.volume->geometry()).part(), more.between(0.02, 0.6)};
+        c.volumeKind += " faint";
+    }
     c.camera = randomCamera(c.cameraKind, random, c.volume->geometry());
     c.tf = randomTf(c.tfKind, random, *c.volume);
     c.tf.validate();

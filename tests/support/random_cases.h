@@ -50,6 +50,7 @@ RandomCase randomCase(std::uint32_t number, double size = 1);
 struct Variant {
     bool affine = false;  ///< the grid turned at random, mirrored or not, sheared by 5 to 20 degrees or not
     bool clipped = false; ///< a part of the box and one to three oblique planes
+    bool faint = false;   ///< another such part, outside of which optical depths are 2 to 60 % of their own
 };
 RandomCase randomCase(std::uint32_t number, double size, const Variant& variant);
 

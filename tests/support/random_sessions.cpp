@@ -375,9 +375,12 @@ Session randomSession(std::uint32_t number) {
     if (random.chance(0.5)) s.density = oddNumber(random, 0, 1);
     if (random.chance(0.5)) s.camera = randomCamera(random);
     if (random.chance(0.5)) {
-        Clipping clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1), {}};
+        Clipping clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1), {}, {}};
         for (int i = random.below(3); i > 0; --i)
             clipping.planes.push_back({oddVector(random, 0.1, 1), oddVector(random, -100, 100).x});
+        if (random.chance(0.3))
+            clipping.rest = {{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1), clipping.planes},
+                             random.between(0, 0.9)};
         s.clipping = clipping;
     }
     if (random.chance(0.7)) {

@@ -6,7 +6,8 @@ namespace pellucid::cli {
 
 namespace {
 constexpr const char* kOption = "--clip";
-}
+constexpr const char* kHolder = "--holder";
+} // namespace
 
 void ClipOptions::add(CLI::App& app) {
     addRepeated(
@@ -14,11 +15,19 @@ void ClipOptions::add(CLI::App& app) {
         "look at this part of the box alone, along x, y or z of its grid in fractions from 0 to 1; or at the points p "
         "of the world with NX*px + NY*py + NZ*pz <= D. What is cut away has opacity 0 in pictures and figures",
         "View");
+    addValue(
+        app, kHolder, "D", holder, realFrom(0, 1),
+        "draw the board or holder that the object lies on this dense, as part of its own density: 0 leaves it out, 1 "
+        "draws and counts it like the rest. An automatic start finds it, and draws it faintly; below 1 it is in no "
+        "figure, and hides what lies behind it as much as is seen of it",
+        "View");
 }
 
 void ClipOptions::applyTo(SceneInputs& inputs) const {
+    inputs.holder = holder;
     if (clips.empty()) return;
     Clipping left;
+    left.rest = inputs.session.clipping->rest;
     for (const Clip& clip : clips) {
         if (const auto* plane = std::get_if<ClipPlane>(&clip)) {
             left.planes.push_back(*plane);
@@ -32,6 +41,12 @@ void ClipOptions::applyTo(SceneInputs& inputs) const {
     }
     atOption(kOption, [&] { left.validate(); });
     inputs.session.clipping.set(left);
+}
+
+void ClipOptions::check(const Scene& scene) const {
+    if (!holder || *holder == 1 || !scene.session.clipping->rest.isNone()) return;
+    throw UsageError("no board or holder has been found", kHolder,
+                     scene.proposal ? "leave it out, or use --clip" : "only an automatic start looks for one");
 }
 
 } // namespace pellucid::cli

@@ -253,7 +253,10 @@ void OpenController::openPart(const QString& text, const std::optional<VoxelRegi
         editVariable(session, [&](Variable& v) {
             if (region && !v.window && window.lo < window.hi) v.window = window; // not that of the region
         });
-        session.clipping.edit([](Clipping& c) { c.lo = Vec3(0), c.hi = Vec3(1); });
+        session.clipping.edit([](Clipping& c) {
+            c.lo = Vec3(0), c.hi = Vec3(1);
+            c.rest = {}; // of another box
+        });
     });
 }
 

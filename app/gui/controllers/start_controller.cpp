@@ -1,7 +1,6 @@
 #include "controllers/start_controller.h"
 
 #include "controllers/open_controller.h"
-#include "render/holder.h"
 #include "services/services.h"
 #include "store/edits.h"
 #include "store/view_edits.h"
@@ -23,25 +22,26 @@ QString percentText(double share) {
     return QString::number(100 * share, 'g', 2) + QStringLiteral(" %");
 }
 
-/// What the object lies on can be cut away, where it is found and nothing is cut away yet.
-void offerToLeaveOutHolder(Services& services) {
-    const Scene& scene = services.scene();
-    if (!scene.session.clipping->isNone()) return;
-    const std::optional<Holder> holder = findHolder(*scene.volume, scene.proposal->tf);
-    if (!holder) return;
-    const auto cutTo = [&services](const QString& text, const Clipping& clipping) {
-        if (!services.isEditable()) return;
-        services.store().edit(text, {}, [&](Session& session) { session.clipping.set(clipping); });
+/// What the object lies on is faint at first. It can be left out, or drawn like the rest.
+void offerForHolder(Services& services) {
+    if (services.scene().session.clipping->rest.isNone()) return;
+    const auto edit = [&services](const QString& text, void (*change)(FaintRest&)) {
+        if (!services.isEditable() || services.scene().session.clipping->rest.isNone()) return false;
+        services.store().edit(text, {}, [change](Session& session) {
+            session.clipping.edit([change](Clipping& clipping) { change(clipping.rest); });
+        });
         fitView(services.store());
+        return true;
     };
-    const auto bringBack = [cutTo] { cutTo(QObject::tr("Show the holder"), {}); };
-    const auto leaveOut = [&services, cutTo, bringBack, clipping = holder->without] {
-        cutTo(QObject::tr("Leave out the holder"), clipping);
-        services.notices().add({QObject::tr("The board or holder is cut away: it is neither drawn nor measured."),
-                                {{QObject::tr("Show it"), bringBack}}});
+    const auto drawLikeRest = [edit] { edit(QObject::tr("Show the holder"), [](FaintRest& rest) { rest = {}; }); };
+    const auto leaveOut = [&services, edit, drawLikeRest] {
+        if (!edit(QObject::tr("Leave out the holder"), [](FaintRest& rest) { rest.density = 0; })) return;
+        services.notices().add({QObject::tr("The board or holder is left out: it is neither drawn nor measured."),
+                                {{QObject::tr("Show it"), drawLikeRest}}});
     };
-    services.notices().add({QObject::tr("The object lies on a board or holder that runs from border to border."),
-                            {{QObject::tr("Leave it out"), leaveOut}}});
+    services.notices().add(
+        {QObject::tr("The object lies on a board or holder. It is drawn faintly, and no figure counts it."),
+         {{QObject::tr("Leave it out"), leaveOut}, {QObject::tr("Show it"), drawLikeRest}}});
 }
 
 } // namespace
@@ -115,7 +115,7 @@ void StartController::follow() {
     m_again.cancel();
     if (!scene.proposal) return;
     say(*scene.proposal);
-    offerToLeaveOutHolder(m_services);
+    offerForHolder(m_services);
     m_tuning.start(scene, QString::fromStdString(scene.volume->title));
 }
 
@@ -150,7 +150,11 @@ void StartController::showTuned(const Scene& scene, const FirstSight& start) {
         store.session().tf() != scene.session.tf() || store.scene().volume != scene.volume)
         return;
     const bool clean = store.isClean();
-    store.edit(tr("Automatic opacities"), {}, [&start](Session& session) { setStart(session, start); });
+    store.edit(tr("Automatic opacities"), {}, [&](Session& session) {
+        const Part<Clipping> clipping = session.clipping;
+        setStart(session, start);
+        if (!clipping.isSame(scene.session.clipping)) session.clipping = clipping; // somebody has been faster
+    });
     if (clean) store.setClean(); // it is not the user's work
 }
 

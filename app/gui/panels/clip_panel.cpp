@@ -1,4 +1,5 @@
-// The panel of what is cut away: the part of the box, and oblique planes. Picture and figures are of what is left.
+// The panel of what is cut away: the part of the box, and oblique planes. Picture and figures are of what is left. And
+// how dense what the object lies on is drawn.
 #include <array>
 
 #include <QGridLayout>
@@ -31,7 +32,8 @@ void addPlane(Services& services, QAction& handles) {
 }
 
 void clipNothing(Services& services) {
-    services.store().edit(QObject::tr("Remove clipping"), {}, [](Session& session) { session.clipping.set({}); });
+    services.store().edit(QObject::tr("Remove clipping"), {},
+                          [](Session& session) { session.clipping.edit([](Clipping& c) { c.setPart({}); }); });
 }
 
 class ClipPanel : public QWidget {
@@ -59,6 +61,13 @@ private:
     std::array<QLabel*, 3> m_axis{};
     std::array<std::array<QDoubleSpinBox*, 2>, 3> m_box{}; ///< [axis][lower, upper], per cent of the box
     std::array<PlaneRow, kMostClipPlanes> m_planes{};
+    QLabel* m_holderLabel = named(new QLabel(tr("Board or holder"), this), "holderLabel");
+    QDoubleSpinBox* m_holder = named(
+        new QDoubleSpinBox(this), "holderDensity",
+        tr("How dense what the object lies on is drawn, per cent of its own density: 0 leaves it out, at 100 it is "
+           "drawn "
+           "and counted like the rest. Below 100 no figure counts it, but it hides what lies behind it as much as is "
+           "seen of it"));
     QPushButton* m_add =
         named(new QPushButton(tr("&Add plane"), this), "addPlaneButton",
               tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
@@ -74,12 +83,23 @@ ClipPanel::ClipPanel(Services& services, QAction& handles, QWidget* parent) : QW
         rows->addWidget(m_planes[i].widget);
     }
     rows->addLayout(rowOf({{m_add, 1}, {m_reset, 1}}));
+    withLook(m_holder, {.hi = 100, .decimals = 1, .suffix = tr(" %")});
+    rows->addLayout(rowOf({m_holderLabel, {m_holder, 1}}));
     auto* button = named(new QToolButton(this), "clipHandlesButton");
     button->setDefaultAction(&handles);
     rows->addWidget(button);
     rows->addStretch(1);
     fillScrolled(this, rows);
 
+    connect(m_holder, &QDoubleSpinBox::valueChanged, this, [this](double percent) {
+        editPart(m_services.store(), &Session::clipping, tr("Board or holder"), QStringLiteral("clip-holder"),
+                 [&](Clipping& c) {
+                     if (percent < 100)
+                         c.rest.density = percent / 100;
+                     else
+                         c.rest = {};
+                 });
+    });
     connect(m_add, &QPushButton::clicked, this, [this, &handles] { addPlane(m_services, handles); });
     connect(m_reset, &QPushButton::clicked, this, [this] { clipNothing(m_services); });
     followParts(
@@ -208,6 +228,10 @@ void ClipPanel::follow() {
         showNumber(*m_box[axis][1], 100 * clipping.hi[a]);
         nameAxis(axis, geometry);
     }
+    const bool liesOnSomething = !clipping.rest.isNone();
+    m_holderLabel->setVisible(liesOnSomething);
+    m_holder->setVisible(liesOnSomething);
+    showNumber(*m_holder, 100 * clipping.rest.density);
     const double size = 2 * geometry.radius();
     const QString unit = geometry.worldAxes == WorldAxes::Patient ? tr(" mm") : QString();
     for (std::size_t i = 0; i < clipping.planes.size(); ++i) {

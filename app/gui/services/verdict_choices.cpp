@@ -38,7 +38,8 @@ Notice::Choice choiceOf(Services& services, const ReachHelp& help) {
     }
     case ReachHelp::Kind::Clipping:
         return {QObject::tr("Remove clipping"), [&store] {
-                    store.edit(QObject::tr("Remove clipping"), {}, [](Session& session) { session.clipping.set({}); });
+                    store.edit(QObject::tr("Remove clipping"), {},
+                               [](Session& session) { session.clipping.edit([](Clipping& c) { c.setPart({}); }); });
                 }};
     case ReachHelp::Kind::View:
         break;

@@ -186,9 +186,9 @@ private:
 
 FirstSight withOpacitiesForView(const Volume& volume, const Proposal& proposal, const TransferFunction& tf,
                                 const View& view, const JobControl& job) {
-    if (tf.features.empty() || tf.features.size() != proposal.features.size()) return {tf, {}};
+    if (tf.features.empty() || tf.features.size() != proposal.features.size()) return {tf, {}, {}};
     const RayBundle rays(volume, tf, view, 72, job);
-    if (rays.rays() == 0) return {tf, {}};
+    if (rays.rays() == 0) return {tf, {}, {}};
     const std::vector<double> importance = importanceOf(proposal);
     Search search(rays, tf, importance, !proposal.background, job);
     // A cover is a mean over the rays that meet the feature: a share is of all rays.
@@ -196,7 +196,7 @@ FirstSight withOpacitiesForView(const Volume& volume, const Proposal& proposal, 
     double all = 0;
     for (std::size_t f = 0; f < shares.size(); ++f) all += shares[f] *= rays.raysOf(static_cast<int>(f));
     for (double& share : shares) share /= all;
-    return {withPeaks(tf, search.run()), std::move(shares)};
+    return {withPeaks(tf, search.run()), std::move(shares), {}};
 }
 
 } // namespace pellucid

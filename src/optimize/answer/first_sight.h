@@ -21,6 +21,7 @@ std::vector<double> importanceOf(const Proposal& proposal);
 struct FirstSight {
     TransferFunction tf;
     std::vector<double> shares; ///< per feature, of the alpha that is wanted, sum 1; empty where nothing is in sight
+    FaintRest rest;             ///< what the object lies on
 };
 
 /// `tf`, which has the features of `proposal`, with peak opacities for this view: covers near the wanted ones, between

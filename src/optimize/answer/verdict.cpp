@@ -205,7 +205,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
 
     if (!problem.view.clipping.isNone()) {
         ReachProblem whole = problem;
-        whole.view.clipping = {};
+        whole.view.clipping.setPart({});
         if (const double objective = objectiveAt(tools.solve(whole, false, job)); helps(objective))
             verdict.helps.push_back({ReachHelp::Kind::Clipping, 0, {}, {}, objective});
     }

@@ -56,7 +56,10 @@ Camera openingView(const Volume& volume, const TransferFunction& tf, const JobCo
     constexpr double kFromBelow = 1.15; // times as much must be seen from below the horizon to be worth it
     const Geometry& geometry = volume.geometry();
     const Camera usual = homeCamera(geometry, Projection::Perspective);
-    const DrawnPart part = drawnPart(volume, tf, {}, job);
+    const std::optional<Holder> holder = findHolder(volume, tf, job);
+    Clipping clipping;
+    if (holder) clipping.rest.within = holder->without;
+    const DrawnPart part = drawnPart(volume, tf, clipping, job);
     const Camera fitting = fittedTo(part, usual, geometry);
     if (geometry.worldAxes == WorldAxes::Patient || part.empty() || tf.features.empty()) return fitting;
 
@@ -64,22 +67,19 @@ Camera openingView(const Volume& volume, const TransferFunction& tf, const JobCo
         Camera camera;
         double shown, turned; ///< shownLeast(), and the cosine of the angle from the usual direction
     };
-    // What the object lies on is never in front of it.
-    const std::optional<Holder> holder = findHolder(volume, tf, job);
-    const auto isBehindHolder = [&](const Vec3& toEye) {
-        return holder && glm::dot(toEye, holder->side(geometry)) > 0.1;
-    };
+    // What the object lies on is behind it.
+    const auto isBesideHolder = [&](const Vec3& toEye) { return holder && glm::dot(toEye, holder->toward) > -0.1; };
     // How its opacities are balanced is found for the view, so that it has no say in the view.
     const TransferFunction even = withEvenPeaks(tf, geometry, 0.9, 0.25);
     std::vector<Candidate> candidates;
     for (const Vec3& toEye : directionsAround()) {
-        if (isBehindHolder(toEye)) continue;
+        if (isBesideHolder(toEye)) continue;
         const Camera camera = fittedTo(part, lookingFrom(usual, geometry, toEye), geometry);
         const double shown = shownLeast(volume, even, camera, job) / (toEye.z < 0 ? kFromBelow : 1);
         candidates.push_back({camera, shown, -glm::dot(toEye, usual.forward())});
     }
     const double most = std::ranges::max_element(candidates, {}, &Candidate::shown)->shown;
-    if (!isBehindHolder(-usual.forward()) && shownLeast(volume, even, fitting, job) * kClearly >= most) return fitting;
+    if (!isBesideHolder(-usual.forward()) && shownLeast(volume, even, fitting, job) * kClearly >= most) return fitting;
     // Of those that are about as good, the one nearest to the usual direction.
     std::erase_if(candidates, [&](const Candidate& c) { return c.shown * kClearly < most; });
     return std::ranges::max_element(candidates, {}, &Candidate::turned)->camera;

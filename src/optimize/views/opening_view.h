@@ -10,8 +10,8 @@ namespace pellucid {
 /// What is drawn of the volume, fitted into the picture, in perspective. A patient is seen as patients are known, from
 /// the usual direction, 30° to the left of the front and 20° above it. So is whatever shows no more from elsewhere: of
 /// 26 directions around, that one is taken from which most is seen of the feature that is seen least, if that is
-/// clearly more, and from below only if it is still more. A board that the object lies on (findHolder()) is never in
-/// front of it. The third axis of the world is up. The same for any number of threads. Throws Cancelled.
+/// clearly more, and from below only if it is still more. A board that the object lies on (findHolder()) is behind
+/// it. The third axis of the world is up. The same for any number of threads. Throws Cancelled.
 Camera openingView(const Volume& volume, const TransferFunction& tf, const JobControl& job = {});
 
 /// How well a view shows the features: the part that is seen of the one that is seen least, of what would be seen

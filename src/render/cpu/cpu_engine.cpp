@@ -44,12 +44,12 @@ private:
                               Grid<float>* field, const JobControl& job) {
         view.clipping.validate();
         const Camera camera = sweepCamera(view.camera, m_volume.geometry());
-        const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, m_volume.geometry());
-        OpaqueMap opaque = m_volume.opaqueMap(tables, planes);
+        const VoxelClipping clipping = clippingInVoxels(view.clipping, m_volume.geometry());
+        OpaqueMap opaque = m_volume.opaqueMap(tables, clipping);
         const std::vector<SweepPass> passes = sweepPasses(camera, m_volume.geometry());
         std::vector<double> sums(tables.sumCount(), 0.0);
         for (std::size_t n = 0; n < passes.size(); ++n) {
-            const SweepInput in = m_volume.input(camera, planes, passes[n], tables, opaque, weights, field);
+            const SweepInput in = m_volume.input(camera, clipping, passes[n], tables, opaque, weights, field);
             m_runner.run(in, sweepPieces(in), sums, job.part(n, passes.size()));
         }
         return sums;

@@ -182,11 +182,12 @@ private:
             seen.first.overlay = &seen.second;
         }
         const PictureRays picture = raysOf(camera, settings, scale);
-        const std::vector<VoxelPlane> planes = planesInVoxels(settings.clipping, m_volume->geometry());
+        const VoxelClipping clipping = clippingInVoxels(settings.clipping, m_volume->geometry());
+        const std::vector<VoxelPlane> part = planesInVoxels(m_options.part, m_volume->geometry());
         const auto fill = [&](RayVolume& volume, PacketScene& scene) {
             volume.fillVolume(scene);
             volume.fillCamera(camera, picture, scene);
-            volume.fillRegion(planes, m_rays.geometry(), scene);
+            volume.fillRegion(part, clipping, m_rays.geometry(), scene);
             fillLight(settings, scene.light);
             if (scene.light.any) volume.fillLight(camera, settings.light.occlusion > 0, scene.light);
         };

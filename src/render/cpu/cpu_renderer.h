@@ -26,6 +26,7 @@ struct CpuRenderOptions {
     /// The volume is a part of this one: depths count from the middle of its box, and no background is drawn, since
     /// other parts may lie behind.
     std::optional<Geometry> blockOf = {};
+    BoxPart part{}; ///< what is drawn of the volume at all: nothing lies beyond it
 };
 
 std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options);

@@ -75,10 +75,13 @@ struct PacketScene {
     int blockDims[3]{};
     bool leap = true; ///< false: visits every sample
 
-    PacketPlane planes[18]; ///< all that bounds the drawn region, the box included
+    PacketPlane planes[36]; ///< all that bounds the drawn region, the box included
     int planeCount = 0;
-    float step = 1;     ///< world units
-    float stepInD0 = 1; ///< the same in reference lengths
+    PacketPlane faintPlanes[12]; ///< beyond these optical depths are thinned, in mode Composite
+    int faintCount = 0;
+    float faintDensity = 0; ///< to this part of their own
+    float step = 1;         ///< world units
+    float stepInD0 = 1;     ///< the same in reference lengths
     /// How often a step may be halved, in mode Composite: once everywhere, and on where the picture hangs on it by more
     /// than kHalvingTolerance. 0: never.
     int halvings = 0;

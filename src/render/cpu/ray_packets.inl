@@ -178,6 +178,7 @@ private:
         const Vec8 mean = most(Vec8{}, resting ? next.opacity : p.met / way);
         p.depth = mean * (next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
         if constexpr (kInvalid) p.depth *= 0.5f * (last.share + next.share);
+        if (m_s.faintCount > 0) p.depth *= thinned(m_s, m_rays, last.u, next.u);
         // Where it is lit, and where colours of voxels are taken.
         const Vec8 ends = last.opacity + next.opacity;
         const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);

@@ -23,6 +23,8 @@ inline void join(const Rays& a, const Rays& b, Course& first, Course& second) {
         const Vec8 back = (begin - own.depth) / own.depthPerStep;
         for (int axis = 0; axis < 3; ++axis) course.rays.point[axis] += back * own.step[axis];
         course.rays.depth = begin;
+        course.rays.clearFrom -= back;
+        course.rays.clearTo -= back;
         course.enter = any ? -back : Vec8{};
         course.exit = any ? own.count - back : Vec8{};
     };
@@ -155,6 +157,7 @@ private:
         const Int8 resting = positive(way) < 0.01f; // as good as in one place
         const Vec8 mean = most(Vec8{}, resting ? next.opacity : p.met / way);
         p.depth = mean * share * (next.v - last.v) * (m_s.depthUnit * m_s.stepInD0);
+        if (m_s.faintCount > 0) p.depth *= thinned(m_s, m_course.rays, last.v, next.v);
         const Vec8 ends = last.opacity + next.opacity;
         const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);
         p.place = last.v + part * (next.v - last.v);

@@ -85,7 +85,34 @@ struct Rays {
     Vec8 shift;                         ///< sample n lies at u = n + shift, held in [0, count]
     Vec8 view[3];                       ///< unit vector toward the viewer: right, up, backward
     Vec8 depth, depthPerStep;           ///< of `point`, and what a step adds
+    Vec8 clearFrom, clearTo;            ///< u between which nothing is faint
 };
+
+/// Takes of an interval of depths what lies within planes, where points are at `point` + t·`direction`.
+inline void cut(const PacketPlane* planes, int count, const Vec8 (&point)[3], const Vec8 (&direction)[3], Vec8& enter,
+                Vec8& exit) {
+    for (int p = 0; p < count; ++p) {
+        const PacketPlane& plane = planes[p];
+        Vec8 away = Vec8{}, room = all(plane.offset);
+        for (int a = 0; a < 3; ++a) {
+            away += plane.normal[a] * direction[a];
+            room -= plane.normal[a] * point[a];
+        }
+        const Vec8 t = room / away;
+        enter = away < 0 ? most(enter, t) : enter;
+        exit = away > 0 ? least(exit, t) : exit;
+        exit = (away == 0) & (room < 0) ? all(-kNever) : exit;
+    }
+}
+
+/// What of its own a path from u to v keeps where there are PacketScene::faintPlanes.
+inline Vec8 thinned(float density, Vec8 clearFrom, Vec8 clearTo, Vec8 u, Vec8 v) {
+    const Vec8 length = most(v - u, all(1e-6f)), within = least(v, clearTo) - most(u, clearFrom);
+    return density + (1 - density) * least(all(1), most(Vec8{}, within / length));
+}
+inline Vec8 thinned(const PacketScene& s, const Rays& r, Vec8 u, Vec8 v) {
+    return thinned(s.faintDensity, r.clearFrom, r.clearTo, u, v);
+}
 
 inline Vec8 hashOf(Int8 x, Int8 y) { ///< in [0, 1)
     UInt8 h = reinterpret_cast<UInt8>(x) * 0x9E3779B1u + reinterpret_cast<UInt8>(y) * 0x85EBCA77u;
@@ -112,18 +139,7 @@ inline Rays raysOf(const PacketScene& s, Int8 x, Int8 y) {
         direction[a] = c.direction[a] + px * c.directionBy[0][a] + py * c.directionBy[1][a];
     }
     Vec8 enter = all(c.nearest), exit = all(kNever);
-    for (int p = 0; p < s.planeCount; ++p) {
-        const PacketPlane& plane = s.planes[p];
-        Vec8 away = Vec8{}, room = all(plane.offset);
-        for (int a = 0; a < 3; ++a) {
-            away += plane.normal[a] * direction[a];
-            room -= plane.normal[a] * point[a];
-        }
-        const Vec8 t = room / away;
-        enter = away < 0 ? most(enter, t) : enter;
-        exit = away > 0 ? least(exit, t) : exit;
-        exit = (away == 0) & (room < 0) ? all(-kNever) : exit;
-    }
+    cut(s.planes, s.planeCount, point, direction, enter, exit);
     const Int8 inPicture = (x < s.width) & (y < s.height);
     if (s.groundDepth) {
         for (int n = 0; n < kWide; ++n) {
@@ -140,6 +156,14 @@ inline Rays raysOf(const PacketScene& s, Int8 x, Int8 y) {
         r.point[a] = point[a] + enter * direction[a];
         r.step[a] = direction[a] * r.depthPerStep;
         r.perStep[a] = 1.0f / (positive(r.step[a]) > 1e-12f ? r.step[a] : all(1e-12f));
+    }
+    r.clearFrom = all(-kNever);
+    r.clearTo = all(kNever);
+    if (s.faintCount > 0) {
+        Vec8 from = all(-kNever), to = all(kNever);
+        cut(s.faintPlanes, s.faintCount, point, direction, from, to);
+        r.clearFrom = (from - enter) / r.depthPerStep;
+        r.clearTo = (to - enter) / r.depthPerStep;
     }
     r.shift = s.jitter ? hashOf(x, y) - 1.0f : Vec8{};
     return r;

@@ -19,7 +19,7 @@ void copy(const Vec3& from, float (&to)[3]) {
 }
 
 /// The same half-space in the voxels of another grid.
-VoxelPlane moved(const VoxelPlane& plane, const Geometry& from, const Geometry& to) {
+VoxelPlane inOther(const VoxelPlane& plane, const Geometry& from, const Geometry& to) {
     const Mat3 fromOther = from.indexFromWorld() * to.worldFromIndex();
     const Vec3 start = from.voxelFromWorld(to.worldFromVoxel(Vec3(0)));
     return {glm::transpose(fromOther) * plane.normal, plane.offset - glm::dot(plane.normal, start)};
@@ -111,12 +111,13 @@ void RayVolume::fillCamera(const Camera& camera, const PictureRays& picture, Pac
     s.stepInD0 = static_cast<float>(picture.stepInD0);
 }
 
-void RayVolume::fillRegion(std::span<const VoxelPlane> planes, const Geometry& first, PacketScene& s) const {
-    const auto add = [&](const Vec3& normal, double offset) {
-        PacketPlane& plane = s.planes[s.planeCount++];
+void RayVolume::fillRegion(std::span<const VoxelPlane> part, const VoxelClipping& clipping, const Geometry& first,
+                           PacketScene& s) const {
+    const auto put = [](const Vec3& normal, double offset, PacketPlane& plane) {
         copy(normal, plane.normal);
         plane.offset = static_cast<float>(offset);
     };
+    const auto add = [&](const Vec3& normal, double offset) { put(normal, offset, s.planes[s.planeCount++]); };
     for (int a = 0; a < 3; ++a) {
         Vec3 normal(0);
         normal[a] = 1;
@@ -124,10 +125,17 @@ void RayVolume::fillRegion(std::span<const VoxelPlane> planes, const Geometry& f
         add(normal, m_geometry.voxelBoxMax()[a]);
     }
     const bool own = &first == &m_geometry;
-    for (const VoxelPlane& plane : planes) {
-        const VoxelPlane here = own ? plane : moved(plane, first, m_geometry);
-        add(here.normal, here.offset);
-    }
+    const auto moved = [&](const VoxelPlane& plane) { return own ? plane : inOther(plane, first, m_geometry); };
+    for (const VoxelPlane& plane : part) add(moved(plane).normal, moved(plane).offset);
+    for (const VoxelPlane& plane : clipping.cut) add(moved(plane).normal, moved(plane).offset);
+    // An overlay, and modes that do not composite, have nothing there.
+    const bool faint = own && s.mode == PacketMode::Composite && clipping.density > 0;
+    if (faint) s.faintDensity = static_cast<float>(clipping.density);
+    for (const VoxelPlane& plane : clipping.faint)
+        if (faint)
+            put(plane.normal, plane.offset, s.faintPlanes[s.faintCount++]);
+        else
+            add(moved(plane).normal, moved(plane).offset);
 }
 
 void RayVolume::fillFeatures(PacketScene& s) const {

@@ -37,8 +37,9 @@ public:
     /// Voxels and tables; prepare() has been called. The scene points into this.
     void fillVolume(PacketScene& scene) const;
     void fillCamera(const Camera& camera, const PictureRays& picture, PacketScene& scene) const;
-    /// The sides of the box, and half-spaces in the voxels of `first`.
-    void fillRegion(std::span<const VoxelPlane> planes, const Geometry& first, PacketScene& scene) const;
+    /// The sides of the box, what `part` leaves of it, and a clipping, both in the voxels of `first`.
+    void fillRegion(std::span<const VoxelPlane> part, const VoxelClipping& clipping, const Geometry& first,
+                    PacketScene& scene) const;
     /// Of features and of the one that is drawn alone.
     void fillFeatures(PacketScene& scene) const;
     /// What of light the volume itself decides.

@@ -36,7 +36,7 @@ int longestComponent(const Vec3& v) {
     return a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
 }
 
-/// The region of voxels that is drawn: the box, as far as it is not clipped along its axes.
+/// The region of voxels that is drawn: the box, as far as it is not cut away along its axes.
 struct Bounds {
     Vec3 lo, hi;
 };

@@ -78,17 +78,20 @@ void fillView(const ShearView& view, ShearedScene& s) {
 }
 
 void fillPlanes(const PacketScene& scene, ShearedScene& s) {
-    s.planeCount = scene.planeCount;
-    for (int p = 0; p < scene.planeCount; ++p) {
-        const PacketPlane& from = scene.planes[p];
-        PacketPlane& to = s.planes[p];
-        for (int a = 0; a < 3; ++a) to.normal[a] = from.normal[s.axis[a]];
-        to.offset = from.offset;
-        if (s.reversed) { // n·(last − w) ≤ offset
-            to.offset -= to.normal[2] * static_cast<float>(s.dims[2] - 1);
-            to.normal[2] = -to.normal[2];
+    const auto fill = [&s](const PacketPlane* all, int count, PacketPlane* turned) {
+        for (int p = 0; p < count; ++p) {
+            const PacketPlane& from = all[p];
+            PacketPlane& to = turned[p];
+            for (int a = 0; a < 3; ++a) to.normal[a] = from.normal[s.axis[a]];
+            to.offset = from.offset;
+            if (s.reversed) { // n·(last − w) ≤ offset
+                to.offset -= to.normal[2] * static_cast<float>(s.dims[2] - 1);
+                to.normal[2] = -to.normal[2];
+            }
         }
-    }
+    };
+    fill(scene.planes, scene.planeCount, s.planes);
+    fill(scene.faintPlanes, scene.faintCount, s.faintPlanes);
 }
 
 /// Where the rows of rays have met something, see ShearedScene::extents.

@@ -37,8 +37,7 @@ struct ShearedScene {
     /// that have met anything. For the warp.
     const int* extents = nullptr;
 
-    PacketPlane planes[18]; ///< in (u, v, w)
-    int planeCount = 0;
+    PacketPlane planes[36], faintPlanes[12]; ///< those of `scene`, in (u, v, w)
     /// By u, v and w: along the picture to the right, downward and ahead, world units per voxel.
     float right[3]{}, down[3]{}, ahead[3]{};
     float cameraFromGradient[3][3]{}; ///< that of PacketLight by u, v and w

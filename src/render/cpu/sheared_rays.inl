@@ -101,13 +101,12 @@ private:
         m_exit = all(static_cast<float>(m_s.dims[2]));
         const Vec8 u = m_u0 * m_s.scale[0] + m_s.shift[0][0];
         const float v = m_v0 * m_s.scale[0] + m_s.shift[1][0];
-        for (int p = 0; p < m_s.planeCount; ++p) {
-            const PacketPlane& plane = m_s.planes[p];
-            const Vec8 away = plane.normal[0] * m_way[0] + plane.normal[1] * m_way[1] + plane.normal[2],
-                       room = plane.offset - plane.normal[0] * u - plane.normal[1] * v, t = room / away;
-            m_enter = away < 0 ? most(m_enter, t) : m_enter;
-            m_exit = away > 0 ? least(m_exit, t) : m_exit;
-            m_exit = (away == 0) & (room < 0) ? all(-2) : m_exit;
+        const Vec8 point[3] = {u, all(v), Vec8{}}, way[3] = {m_way[0], m_way[1], all(1)};
+        cut(m_s.planes, m_scene.planeCount, point, way, m_enter, m_exit);
+        if (m_scene.faintCount > 0) {
+            m_clearFrom = all(-kNever);
+            m_clearTo = all(kNever);
+            cut(m_s.faintPlanes, m_scene.faintCount, point, way, m_clearFrom, m_clearTo);
         }
         const Int8 meets = m_enter < m_exit;
         m_exit = meets ? m_exit : all(-2);
@@ -185,7 +184,7 @@ private:
         if (w >= m_allIn && w + 1 <= m_allOut) {
             if constexpr (!kInvalid) {
                 if (none((next.sums[3] ^ last.sums[3]) | (next.sums[3] & 1))) return false;
-                return take(n, last, next, all(1));
+                return take(n, last, next, m_scene.faintCount > 0 ? thinnedBetween(all(w), all(w + 1)) : all(1));
             }
         }
         // The part of the way between the slices that lies within what is drawn.
@@ -205,7 +204,12 @@ private:
         Vec8 share = part;
         if constexpr (kInvalid) share *= 0.5f * (last.share + next.share);
         if (none((b.sums[3] ^ a.sums[3]) | (b.sums[3] & 1))) return false;
+        if (m_scene.faintCount > 0) share *= thinnedBetween(w + from, w + to);
         return take(n, a, b, share);
+    }
+    /// What of its own the way between two w keeps.
+    Vec8 thinnedBetween(Vec8 from, Vec8 to) const {
+        return thinned(m_scene.faintDensity, m_clearFrom, m_clearTo, from, to);
     }
 
     /// `share` of the segment's length counts.
@@ -309,9 +313,10 @@ private:
     Met m_met[2];
     Vec8 m_u0, m_way[3]; ///< per slice
     float m_v0 = 0;
-    Vec8 m_length;        ///< of the way from slice to slice, in d0
-    Vec8 m_view[3];       ///< unit vector toward the viewer: right, up, backward
-    Vec8 m_enter, m_exit; ///< in w
+    Vec8 m_length;               ///< of the way from slice to slice, in d0
+    Vec8 m_view[3];              ///< unit vector toward the viewer: right, up, backward
+    Vec8 m_enter, m_exit;        ///< in w
+    Vec8 m_clearFrom, m_clearTo; ///< in w; where something is faint, between them nothing is
     int m_firstSlice = 0, m_lastSlice = 0;
     float m_allIn = 0, m_allOut = 0; ///< between these no ray enters or leaves
     Vec8 m_clear = all(1), m_rgb[3]{}, m_unlit[3]{}, m_pending = Vec8{};

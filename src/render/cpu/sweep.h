@@ -125,7 +125,10 @@ struct SweepInput {
     // What is left of the volume.
     SweepPlane planes[kMostSweepPlanes];
     int planeCount = 0;
-    double clipTie = 0; ///< voxels no farther than this beyond a plane are kept
+    double clipTie = 0;                       ///< voxels no farther than this beyond a plane are kept
+    SweepPlane faintPlanes[kMostSweepPlanes]; ///< what lies beyond these is faint
+    int faintCount = 0;
+    float faintDensity = 0; ///< FaintRest::density
 
     SweepBox window{}; ///< the voxels that are measured
 

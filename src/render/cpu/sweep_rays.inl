@@ -273,11 +273,15 @@ public:
     /// Of the lines (a … a + 7, b) from the plane w0 to the plane w1. `kept` is set where a part is clipped.
     Clipped clip(const LinePlane& from, const LinePlane& to, double w0, double w1, double a, double b,
                  Kept& kept) const {
+        return clip(m_in.planes, m_in.planeCount, from, to, w0, w1, a, b, kept);
+    }
+    Clipped clip(const SweepPlane* planes, int count, const LinePlane& from, const LinePlane& to, double w0, double w1,
+                 double a, double b, Kept& kept) const {
         const Vec8 zero = {};
         const double u0 = from.u(a), u1 = to.u(a), v0 = from.v(b), v1 = to.v(b);
         Clipped result = Clipped::Nothing;
-        for (int i = 0; i < m_in.planeCount; ++i) {
-            const SweepPlane& p = m_in.planes[i];
+        for (int i = 0; i < count; ++i) {
+            const SweepPlane& p = planes[i];
             // Linear in each of line and way: the extremes are at the corners.
             // Lines that run in a plane, up to rounding, are kept as voxels are.
             const double near0 = p.beyond(u0, v0, w0) - m_in.clipTie, near1 = p.beyond(u1, v1, w1) - m_in.clipTie,
@@ -298,6 +302,25 @@ public:
         }
         return result;
     }
+    bool isFaint() const { return m_in.faintCount > 0; }
+    /// As part of its own, what the lines keep of the path between two planes of which they come `reach`, (0, 1], where
+    /// some of it is faint.
+    Vec8 thinned(const LinePlane& from, const LinePlane& to, double w0, double w1, double a, double b,
+                 Vec8 reach) const {
+        const Vec8 zero = {}, one = zero + 1.0f, density = zero + m_in.faintDensity;
+        Kept kept;
+        switch (clip(m_in.faintPlanes, m_in.faintCount, from, to, w0, w1, a, b, kept)) {
+        case Clipped::Nothing:
+            return one;
+        case Clipped::All:
+            return density;
+        case Clipped::Part:
+            break;
+        }
+        const Vec8 leave = kept.leave < reach ? kept.leave : reach, within = leave - kept.enter,
+                   share = within > zero ? within / reach : zero;
+        return density + (one - density) * share;
+    }
     /// The intensities where the kept part of a stretch begins and ends: they go linearly along it.
     static void narrow(Samples& from, Samples& to, const Kept& kept) {
         const Vec8 e0 = toFloat(from.entry), way = toFloat(to.entry) - e0, zero = {}, one = zero + 1.0f;
@@ -305,14 +328,18 @@ public:
         from.entry = toInt(e0 + enter * way + 0.5f);
         to.entry = toInt(e0 + leave * way + 0.5f);
     }
-    /// Bit n: the voxel (u + n, v, k) is kept.
+    /// Bit n: the voxel (u + n, v, k) is kept, and not faint.
     unsigned keptVoxels(int u, int v, int k) const {
         unsigned kept = (1u << kWide) - 1;
-        for (int i = 0; i < m_in.planeCount; ++i) {
-            const double first = m_in.planes[i].beyond(u, v, k);
-            for (int n = 0; n < kWide; ++n)
-                if (first + n * m_in.planes[i].u > m_in.clipTie) kept &= ~(1u << n);
-        }
+        const auto leave = [&](const SweepPlane* planes, int count) {
+            for (int i = 0; i < count; ++i) {
+                const double first = planes[i].beyond(u, v, k);
+                for (int n = 0; n < kWide; ++n)
+                    if (first + n * planes[i].u > m_in.clipTie) kept &= ~(1u << n);
+            }
+        };
+        leave(m_in.planes, m_in.planeCount);
+        leave(m_in.faintPlanes, m_in.faintCount);
         return kept;
     }
 
@@ -506,6 +533,7 @@ public:
                 const Int8 index = toInt(kIota) + a;
                 path = (index >= go.going.first) & (index < go.going.end) ? path : Vec8{};
             }
+            if (m_lines.isFaint()) path *= m_lines.thinned(p0, p1, w0, w1, a, b, Vec8{} + 1.0f);
             if (m_lines.clips()) {
                 typename Lines<kCodes>::Kept kept;
                 const auto clipped = m_lines.clip(p0, p1, w0, w1, a, b, kept);

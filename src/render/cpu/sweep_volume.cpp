@@ -216,24 +216,30 @@ void SweepVolume::widen(std::array<std::uint16_t, 2>* ranges, const Code* codes)
     }
 }
 
-void SweepVolume::setPlanes(SweepInput& in, std::span<const VoxelPlane> planes, const SweepPass& pass) {
-    PELLUCID_CHECK(planes.size() <= kMostSweepPlanes);
+void SweepVolume::setClipping(SweepInput& in, const VoxelClipping& clipping, const SweepPass& pass) {
+    const auto set = [&](std::span<const VoxelPlane> planes, SweepPlane* to) {
+        PELLUCID_CHECK(planes.size() <= kMostSweepPlanes);
+        for (const VoxelPlane& plane : planes) {
+            SweepPlane& p = *to++;
+            const Vec3 n = pass.permuted(plane.normal);
+            p = {n.x, n.y, n.z, plane.offset};
+            if (!pass.flipped) continue;
+            p.w = -n.z;
+            p.offset = plane.offset - n.z * (in.nw - 1);
+        }
+        return static_cast<int>(planes.size());
+    };
     in.clipTie = kClipTie;
-    for (const VoxelPlane& plane : planes) {
-        SweepPlane& p = in.planes[in.planeCount++];
-        const Vec3 n = pass.permuted(plane.normal);
-        p = {n.x, n.y, n.z, plane.offset};
-        if (!pass.flipped) continue;
-        p.w = -n.z;
-        p.offset = plane.offset - n.z * (in.nw - 1);
-    }
+    in.planeCount = set(clipping.cut, in.planes);
+    in.faintCount = set(clipping.faint, in.faintPlanes);
+    in.faintDensity = static_cast<float>(clipping.density);
 }
 
-OpaqueMap SweepVolume::opaqueMap(const SweepTables& tables, std::span<const VoxelPlane> planes) const {
+OpaqueMap SweepVolume::opaqueMap(const SweepTables& tables, const VoxelClipping& clipping) const {
     OpaqueMap map;
     map.blocks = tables.opaqueBlocks(m_ranges);
     // Blocks that are clipped away, with all that interpolation around them reaches.
-    for (const VoxelPlane& plane : planes)
+    for (const VoxelPlane& plane : clipping.cut)
         parallelFor(asSize(m_blocks.z), [&](std::size_t z) {
             std::uint8_t* block = &map.blocks[z * layerSize(m_blocks)];
             for (int y = 0; y < m_blocks.y; ++y)
@@ -299,7 +305,7 @@ void SweepVolume::setOpaque(SweepInput& in, OpaqueMap& opaque, const SweepPass& 
     in.flipped = pass.flipped;
 }
 
-SweepInput SweepVolume::input(const Camera& camera, std::span<const VoxelPlane> planes, const SweepPass& pass,
+SweepInput SweepVolume::input(const Camera& camera, const VoxelClipping& clipping, const SweepPass& pass,
                               const SweepTables& tables, OpaqueMap& opaque, const WeightFields* weights,
                               Grid<float>* field) {
     SweepInput in;
@@ -333,7 +339,7 @@ SweepInput SweepVolume::input(const Camera& camera, std::span<const VoxelPlane> 
         }
     }
     if (field) in.field = field->data() + value;
-    setPlanes(in, planes, pass);
+    setClipping(in, clipping, pass);
     in.window = {{0, 0, 0}, {in.nu, in.nv, in.nw}};
     return in;
 }

@@ -57,10 +57,10 @@ public:
     const SweepCodes& codes() const { return m_codeSpace; }
     VoxelRegion region() const { return {m_first, m_first + m_volume->dims()}; } ///< that is stored
 
-    OpaqueMap opaqueMap(const SweepTables& tables, std::span<const VoxelPlane> planes) const;
+    OpaqueMap opaqueMap(const SweepTables& tables, const VoxelClipping& clipping) const;
     /// What a pass of a view is, with all of its volume to be measured. `weights` and `field`, where not null, have the
     /// shape of what is stored. Refers to `tables`, `opaque` (whose spans it sets), `weights`, `field` and this.
-    SweepInput input(const Camera& camera, std::span<const VoxelPlane> planes, const SweepPass& pass,
+    SweepInput input(const Camera& camera, const VoxelClipping& clipping, const SweepPass& pass,
                      const SweepTables& tables, OpaqueMap& opaque, const WeightFields* weights, Grid<float>* field);
 
 private:
@@ -71,7 +71,7 @@ private:
     void widen(std::array<std::uint16_t, 2>* ranges, const Code* codes) const;
     const std::uint8_t* narrowCodes() const { return m_shared ? m_shared->codes.narrow() : nullptr; }
     const std::uint16_t* wideCodes() const { return m_shared ? m_shared->codes.wide() : m_codes.data(); }
-    static void setPlanes(SweepInput& in, std::span<const VoxelPlane> planes, const SweepPass& pass);
+    static void setClipping(SweepInput& in, const VoxelClipping& clipping, const SweepPass& pass);
     void setCodes(SweepInput& in, const SweepPass& pass);
     void setOpaque(SweepInput& in, OpaqueMap& opaque, const SweepPass& pass) const;
     static SweepStrides stridesOf(const Int3& dims, const SweepPass& pass);

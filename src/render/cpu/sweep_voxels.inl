@@ -170,7 +170,7 @@ public:
             m_lines.codesAt(block.u, v, k, block.codes);
             block.listed = 0;
             const int end = smaller(kWide, extent.u1 + 1 - block.u);
-            const unsigned kept = m_lines.clips() ? m_lines.keptVoxels(block.u, v, k) : ~0u;
+            const unsigned kept = m_lines.clips() || m_lines.isFaint() ? m_lines.keptVoxels(block.u, v, k) : ~0u;
             for (int n = larger(0, extent.u0 - block.u); n < end; ++n) {
                 block.list[block.listed] = n;
                 block.listed += m_in.featureOfCode[block.codes[n]] != kTransparent && (kept >> n & 1) != 0;
@@ -400,6 +400,9 @@ private:
         const Samples to{toInt(before + part * (own - before) + 0.5f), from.share + part * (1.0f - from.share)};
         if (!p.insideV || !m_lines.insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1)))
             path *= m_lines.insideShare(p.lines, m_lines.voxelLines(block.k, block.k), block.u, block.v);
+        if (m_lines.isFaint())
+            path *= m_lines.thinned(p.lines, m_lines.voxelLines(block.k, block.k), p.w, block.k, block.u, block.v,
+                                    part > zero ? part : zero + 1.0f);
         typename Lines<kCodes>::Kept kept;
         // The voxels that count are kept themselves: what is cut away lies before them.
         if (m_lines.clips() && m_lines.clip(p.lines, m_lines.voxelLines(block.k, block.k), p.w, block.k, block.u,
@@ -451,6 +454,11 @@ private:
                 Vec8 path = length * (reach > zero ? reach : zero);
                 if (!inside(p0) || !inside(p1)) path *= m_lines.insideShare(p0.lines, p1.lines, block.u, block.v);
                 Samples from = before, to = now;
+                if (m_lines.isFaint()) {
+                    const Vec8 part = partOf(reach, p0, p1);
+                    path *= m_lines.thinned(p0.lines, p1.lines, p0.w, p1.w, block.u, block.v,
+                                            part > zero ? part : zero + 1.0f);
+                }
                 if (m_lines.clips()) path *= clippedShare(block, p0, p1, reach, from, to);
                 if (!body(m_lines.stretch(from, to, path))) return;
                 before = now;
@@ -461,6 +469,10 @@ private:
         }
     }
 
+    /// As part of the way from p0 to p1, `reach` in w.
+    static Vec8 partOf(Vec8 reach, const OwnPlane& p0, const OwnPlane& p1) {
+        return reach / static_cast<float>(p1.w > p0.w ? p1.w - p0.w : 1);
+    }
     /// What clip planes leave of the first `reach` (w) of the own lines between two planes, of which `from` and `to`
     /// are made the ends: [0,1].
     Vec8 clippedShare(const VoxelBlock& block, const OwnPlane& p0, const OwnPlane& p1, Vec8 reach, Samples& from,
@@ -475,7 +487,7 @@ private:
         case Lines<kCodes>::Clipped::Part:
             break;
         }
-        const Vec8 part = reach / static_cast<float>(p1.w > p0.w ? p1.w - p0.w : 1);
+        const Vec8 part = partOf(reach, p0, p1);
         kept.leave = kept.leave < part ? kept.leave : part;
         m_lines.narrow(from, to, kept);
         const Vec8 share = (kept.leave - kept.enter) / part;

@@ -39,9 +39,9 @@ Axes axesAlong(const Vec3& forward, const Geometry& geometry) {
 class Pictures {
 public:
     Pictures(const View& view, const Geometry& geometry, Quality quality, int mostPixels)
-        : m_geometry(geometry), m_d0(geometry.d0()), m_planes(planesInVoxels(view.clipping, geometry)),
-          m_corners(keptCorners(geometry, m_planes)), m_perD0(quality == Quality::High ? 2 : 1),
-          m_mostPixels(mostPixels) {
+        : m_geometry(geometry), m_d0(geometry.d0()), m_clipping(clippingInVoxels(view.clipping, geometry)),
+          m_planes(m_clipping.cut), m_corners(keptCorners(geometry, m_planes)),
+          m_perD0(quality == Quality::High ? 2 : 1), m_mostPixels(mostPixels) {
         if (const auto kept = keptVoxels(geometry, m_planes))
             m_anchor = geometry.worldFromVoxel(Vec3(kept->first));
         else
@@ -134,6 +134,8 @@ private:
 
         LayeredView view;
         view.sides = m_sides;
+        view.faint = m_clipping.faint;
+        view.faintDensity = m_clipping.density;
         const Mat3 worldFromIndex = m_geometry.worldFromIndex();
         const Mat3 rows(axes.right, axes.up, axes.forward);
         view.localFromVoxel = glm::transpose(rows) * worldFromIndex / m_d0;
@@ -200,6 +202,7 @@ private:
 
     const Geometry& m_geometry;
     double m_d0;
+    VoxelClipping m_clipping;
     std::vector<VoxelPlane> m_planes, m_sides;
     std::vector<Vec3> m_corners; ///< voxel coordinates; empty: no voxel is kept
     Vec3 m_anchor{0, 0, 0};      ///< centre of the first kept voxel, world

@@ -33,6 +33,8 @@ struct LayeredView {
 
     /// Sides of the box and clip planes, voxel coordinates; distances in d0.
     std::vector<VoxelPlane> sides;
+    std::vector<VoxelPlane> faint; ///< beyond these optical depths are thinned to `faintDensity` of their own
+    double faintDensity = 0;
     /// For eyes close to the box: voxels are this picture's whose largest component of faceFromVoxel·voxel + faceOffset
     /// is `faceAxis`, of sign `faceSign`; −1: all are.
     int faceAxis = -1, faceSign = 1;

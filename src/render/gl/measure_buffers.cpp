@@ -99,11 +99,12 @@ int segmentsFor(int candidates, int slots) {
     return std::min(room, group / (3 * candidates));
 }
 
-std::vector<std::string> definesFor(const ResidentVolume& volume, int candidates, int slots, bool clipped) {
+std::vector<std::string> definesFor(const ResidentVolume& volume, int candidates, int slots, bool clipped, bool faint) {
     std::vector<std::string> defines{"CANDIDATES " + std::to_string(candidates)};
     if (volume.hasInvalid()) defines.push_back("HAS_INVALID");
     if (volume.folding().folded()) defines.push_back("FOLDED");
     if (clipped) defines.push_back("CLIPPED");
+    if (faint) defines.push_back("FAINT");
     if (slots == 0) {
         defines.push_back("FIELD");
     } else {

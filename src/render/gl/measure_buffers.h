@@ -49,8 +49,9 @@ void readVisibility(const Buffer& buffer, std::size_t count, const std::function
 int slotsFor(int features);
 /// As many invocations per item as a work group has, where shared memory has room for their accumulators; 0: no room.
 int segmentsFor(int candidates, int slots);
-/// The permutation of the engines' shaders; slots 0: the field instead of sums.
-std::vector<std::string> definesFor(const ResidentVolume& volume, int candidates, int slots, bool clipped);
+/// The permutation of the engines' shaders; slots 0: the field instead of sums. `clipped`, `faint`: there are planes
+/// beyond which there is nothing, and such beyond which optical depths are thinned.
+std::vector<std::string> definesFor(const ResidentVolume& volume, int candidates, int slots, bool clipped, bool faint);
 /// Throws Error: more features than any device has room for.
 void refuseTooManyFeatures(int features);
 /// Slot of every code: the index of its feature, or the number of features for "in none".

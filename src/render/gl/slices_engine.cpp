@@ -101,6 +101,10 @@ private:
             p->set(5, Vec3(view.front, view.step, view.slabs));
             p->set(9, std::ceil(1 + m_sampling.piecesPerVoxel * view.crossed - 1e-6));
             p->setPlanes(28, 29, view.sides);
+            if (!view.faint.empty()) {
+                p->set(47, view.faintDensity);
+                p->setPlanes(48, 49, view.faint);
+            }
         }
         const Program& p = programs.gather;
         p.set(6, view.localFromVoxel);
@@ -160,7 +164,8 @@ private:
             const LayeredView& view = views[v];
             const JobControl part = job.part(v, views.size());
             const int ring = makeLayers(view);
-            const Programs& programs = m_programs.of(definesFor(m_volume, 1, slots, view.sides.size() > 6));
+            const Programs& programs =
+                m_programs.of(definesFor(m_volume, 1, slots, view.sides.size() > 6, !view.faint.empty()));
             describe(programs, view, tables, ring);
             if (slots > 0) programs.gather.set(27, weighted);
 

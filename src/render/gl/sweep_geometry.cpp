@@ -40,8 +40,8 @@ std::array<int, 2> lateralAxes(int axis) { return {axis == 0 ? 1 : 0, axis == 2 
 /// The volume as all sweeps see it.
 struct Swept {
     const Geometry& geometry;
-    std::vector<VoxelPlane> planes;
-    KeptVoxels kept;
+    VoxelClipping clipping;
+    KeptVoxels kept; ///< what is not cut away
 };
 
 Sweep alongAxis(const Swept& swept, int axis, int sign) {
@@ -57,9 +57,16 @@ Sweep alongAxis(const Swept& swept, int axis, int sign) {
     sweep.last = {last[a], last[b], sign > 0 ? last[axis] : farthest - first[axis]};
     const Mat3 fromQ = sweep.voxelFromQ();
     sweep.worldFromQ = g.worldFromIndex() * fromQ / g.d0();
-    for (const VoxelPlane& plane : swept.planes)
-        sweep.planes.push_back(
-            {glm::transpose(fromQ) * plane.normal, plane.offset - glm::dot(plane.normal, sweep.voxelOffset())});
+    const auto inQ = [&](const std::vector<VoxelPlane>& planes) {
+        std::vector<VoxelPlane> turned;
+        for (const VoxelPlane& plane : planes)
+            turned.push_back(
+                {glm::transpose(fromQ) * plane.normal, plane.offset - glm::dot(plane.normal, sweep.voxelOffset())});
+        return turned;
+    };
+    sweep.planes = inQ(swept.clipping.cut);
+    sweep.faint = inQ(swept.clipping.faint);
+    sweep.faintDensity = swept.clipping.density;
     sweep.reference = sweep.last.z;
     sweep.firstPlane = sweep.first.z;
     return sweep;
@@ -194,8 +201,8 @@ Sweep::Strides Sweep::strides() const {
 std::vector<Sweep> makeSweeps(const View& view, const Geometry& geometry, Quality quality) {
     const Sampling sampling = samplingOf(quality);
     const Camera& camera = view.camera;
-    Swept swept{geometry, planesInVoxels(view.clipping, geometry), {}};
-    const auto kept = keptVoxels(geometry, swept.planes);
+    Swept swept{geometry, clippingInVoxels(view.clipping, geometry), {}};
+    const auto kept = keptVoxels(geometry, swept.clipping.cut);
     if (!kept) return {};
     swept.kept = *kept;
     const Mat3 indexFromWorld = geometry.indexFromWorld();

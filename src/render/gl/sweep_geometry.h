@@ -25,8 +25,10 @@ struct Sweep {
     bool pyramid = false;
 
     Int3 dims{0, 0, 0};                 ///< of a, b, c
-    Int3 first{0, 0, 0}, last{0, 0, 0}; ///< the voxels that clipping leaves lie between these, both included
+    Int3 first{0, 0, 0}, last{0, 0, 0}; ///< what is not cut away lies between these voxels, both included
     std::vector<VoxelPlane> planes;     ///< what is kept, in q; none where nothing is clipped
+    std::vector<VoxelPlane> faint;      ///< beyond these, in q, optical depths are thinned …
+    double faintDensity = 0;            ///< … to this part of their own
     Mat3 worldFromQ{1};                 ///< of differences, in units of d0: |worldFromQ·Δq| is the length of a path
     bool perspective = true;
     Vec3 eye{0, 0, 0};      ///< in q (perspective)

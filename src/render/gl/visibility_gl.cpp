@@ -52,6 +52,10 @@ public:
             p->set(9, static_cast<double>(s.pieces));
             p->set(21, ring);
             if (!s.planes.empty()) p->setPlanes(28, 29, s.planes);
+            if (!s.faint.empty()) {
+                p->set(47, s.faintDensity);
+                p->setPlanes(48, 49, s.faint);
+            }
         }
         m_gather.set(23, s.ownPlanes);
         m_gather.set(24, s.tolerance);
@@ -192,7 +196,8 @@ private:
             const int end = std::min(plane + atOnce, lastEnd);
             m_volume.require(inVolume(s, std::max(0, plane - s.ownPlanes.y - 1), end));
 
-            const SweepPrograms& programs = m_programs.of(definesFor(m_volume, candidates, slots, !s.planes.empty()));
+            const SweepPrograms& programs =
+                m_programs.of(definesFor(m_volume, candidates, slots, !s.planes.empty(), !s.faint.empty()));
             programs.describe(request, s, ring, m_volume, textureMaxCode(m_grid));
             if (slots > 0) programs.setWeighted(request.weights != nullptr);
             bindTexture(2, GL_TEXTURE_3D, m_volume.weights().name);

@@ -199,6 +199,7 @@ struct VolumeRaycaster::Impl {
         if (bricks->count() > 1) defines.emplace_back("BRICKS");
         if (showsGround(settings)) defines.emplace_back("GROUND");
         if (settings.halvings() > 0) defines.emplace_back("HALVES");
+        if (settings.drawsFaint()) defines.emplace_back("FAINT");
         if (isColored(settings.mode) && settings.colors) defines.emplace_back("VOXEL_COLORS");
         if (isColored(settings.mode) && settings.light.changesColors()) {
             defines.emplace_back("LIGHT");
@@ -361,12 +362,20 @@ struct VolumeRaycaster::Impl {
             throw Error("the picture needs over a million samples along a ray", "step", "make the step longer");
         p.set(5, glm::dvec2(step * g.d0(), step));
         if (halvings > 0) p.set(36, Vec3(std::ldexp(1.0, 1 - halvings), kHalvingTolerance, kLightTurn)); // u_halves
-        Clipping oblique;
-        oblique.planes = settings.clipping.planes;
         const Vec3 dims(g.dims);
+        BoxPart oblique;
+        oblique.planes = settings.clipping.planes;
+        std::vector<VoxelPlane> planes = planesInVoxels(oblique, g);
+        const std::vector<VoxelPlane> faint = planesInVoxels(settings.clipping.rest.within, g);
+        if (settings.drawsFaint()) {
+            p.setPlanes(40, 41, faint);
+            p.set(53, settings.clipping.rest.density); // u_faintDensity
+        } else {
+            planes.insert(planes.end(), faint.begin(), faint.end());
+        }
         p.set(6, settings.clipping.lo * dims - 0.5); // the region that is drawn, voxels
         p.set(7, settings.clipping.hi * dims - 0.5);
-        p.setPlanes(9, 30, planesInVoxels(oblique, g));
+        p.setPlanes(9, 54, planes);
         p.set(10, glm::dvec2(settings.jitter ? picture : glm::vec2(0))); // u_jitter
         p.set(21, dims - 1.0);                                           // u_lastVoxel
         p.set(11, distances.size - 1);                                   // u_lastBlock
