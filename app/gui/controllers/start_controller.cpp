@@ -41,7 +41,7 @@ void offerForHolder(Services& services) {
     };
     services.notices().add(
         {QObject::tr("The object lies on a board or holder. It is drawn faintly, and no figure counts it."),
-         {{QObject::tr("Leave it out"), leaveOut}, {QObject::tr("Show it"), drawLikeRest}}});
+         {{QObject::tr("Leave it out"), leaveOut}, {QObject::tr("Show it fully"), drawLikeRest}}});
 }
 
 } // namespace

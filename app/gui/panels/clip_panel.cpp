@@ -65,9 +65,8 @@ private:
     QDoubleSpinBox* m_holder = named(
         new QDoubleSpinBox(this), "holderDensity",
         tr("How dense what the object lies on is drawn, per cent of its own density: 0 leaves it out, at 100 it is "
-           "drawn "
-           "and counted like the rest. Below 100 no figure counts it, but it hides what lies behind it as much as is "
-           "seen of it"));
+           "drawn and counted like the rest. Below 100 no figure counts it, but it hides what lies behind it as much "
+           "as is seen of it"));
     QPushButton* m_add =
         named(new QPushButton(tr("&Add plane"), this), "addPlaneButton",
               tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
