@@ -134,14 +134,15 @@ TEST_CASE("propose names the view that a volume opens on, and what leaves a boar
     CHECK(j["why"].dump().find("board") != std::string::npos);
     CHECK(j["camera"]["eye"][1].get<double>() > 0); // not from the board's side
 
-    // Every command looks from there, says so, and takes the clip box.
-    const json measured = w.json(with({"measure"}, {"--engine", "cpu"}));
+    // Every command looks from there, says so, and takes the clip box. What --holder says needs no note.
+    const json measured = w.json(with({"measure"}, {"--engine", "cpu", "--holder", "0"}));
     CHECK(measured["camera"] == j["camera"]);
-    const json drawn = w.json(with({"render"}, {"--out", "a.png", "--size", "64x64", "--engine", "cpu"}));
+    const json drawn =
+        w.json(with({"render"}, {"--out", "a.png", "--size", "64x64", "--engine", "cpu", "--holder", "1"}));
     CHECK(drawn["camera"] == j["camera"]);
     CHECK(drawn["view"] == j["view"]);
     w.json(with({"render"}, [&] {
-        std::vector<std::string> more{"--out", "b.png", "--size", "64x64", "--engine", "cpu"};
+        std::vector<std::string> more{"--out", "b.png", "--size", "64x64", "--engine", "cpu", "--holder", "1"};
         more.insert(more.end(), options.begin(), options.end());
         return more;
     }()));

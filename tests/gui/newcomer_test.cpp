@@ -185,7 +185,8 @@ TEST_CASE("a newcomer comes from an own CT to a film in fourteen actions", "[gui
     // Less of the head rest: it is found, and can be left out.
     hand.press("Leave it out");
     w.settle();
-    CHECK_FALSE(w.services().scene().session.clipping->isNone());
+    CHECK_FALSE(w.services().scene().session.clipping->rest.isNone());
+    CHECK(w.services().scene().session.clipping->rest.density == 0);
 
     // The skull lit through the skin, with the vessels.
     hand.openTab("Presets");
