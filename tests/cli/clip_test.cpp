@@ -9,6 +9,7 @@
 #include "session/scene.h"
 #include "session/session_json.h"
 #include "session/workspace.h"
+#include "support/ball_on_board.h"
 #include "volume/loader.h"
 
 using namespace pellucid;
@@ -84,15 +85,7 @@ TEST_CASE("figures of an oblique clip are those of the reference engine", "[cli]
 
 TEST_CASE("a board under an object is faint, and in no figure", "[cli][clip]") {
     const Workshop w;
-    std::string bytes;
-    for (int k = 0; k < 40; ++k)
-        for (int j = 0; j < 40; ++j)
-            for (int i = 0; i < 40; ++i) {
-                const bool board = j < 3 && i >= 2 && i < 38;
-                const bool ball = std::hypot(i - 19.5, j - 14.5, k - 19.5) < 12;
-                bytes.push_back(static_cast<char>(board || ball ? 150 + 20 * ((i + j + k) % 2) : (i * j + k) % 5));
-            }
-    w.write("onboard.raw", bytes);
+    w.write("onboard.raw", test::ballOnBoard());
     const Words data{"onboard.raw", "--raw", "40,40,40,u8"};
     // Of the features, and whether a note says that something is faint.
     const auto measured = [&](const Words& options, bool told) {

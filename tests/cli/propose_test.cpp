@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"
+#include "support/ball_on_board.h"
 
 using nlohmann::json;
 using pellucid::test::Outcome;
@@ -108,15 +109,7 @@ TEST_CASE("propose in Hounsfield units says so", "[cli][propose]") {
 
 TEST_CASE("propose names the view that a volume opens on, and what leaves a board out", "[cli][propose]") {
     const Workshop w;
-    std::string bytes; // a ball of radius 12 on a board of 3 voxels at low y, which runs along z
-    for (int k = 0; k < 40; ++k)
-        for (int j = 0; j < 40; ++j)
-            for (int i = 0; i < 40; ++i) {
-                const bool board = j < 3 && i >= 2 && i < 38;
-                const bool ball = std::hypot(i - 19.5, j - 14.5, k - 19.5) < 12;
-                bytes += static_cast<char>(board || ball ? 150 + 20 * ((i + j + k) % 2) : (i * j + k) % 5);
-            }
-    w.write("onboard.raw", bytes);
+    w.write("onboard.raw", pellucid::test::ballOnBoard());
     const std::vector<std::string> volume{"onboard.raw", "--raw", "40,40,40,u8"};
     const auto with = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
         words.insert(words.begin() + 1, volume.begin(), volume.end());

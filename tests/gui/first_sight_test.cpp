@@ -10,6 +10,7 @@
 #include <QSettings>
 
 #include "controllers/start_controller.h"
+#include "support/ball_on_board.h"
 #include "support/outlier_boxes.h"
 #include "window/welcome_card.h"
 
@@ -92,17 +93,9 @@ TEST_CASE("values far off are said to lie beyond, and a click brings the full ra
 
 TEST_CASE("a board on which an object lies is faint behind it, and a click leaves it out", "[first sight]") {
     const TempFolder folder;
-    std::string bytes;
-    for (int k = 0; k < 40; ++k)
-        for (int j = 0; j < 40; ++j)
-            for (int i = 0; i < 40; ++i) {
-                const bool board = j < 3 && i >= 2 && i < 38;
-                const bool ball = std::hypot(i - 19.5, j - 14.5, k - 19.5) < 12;
-                bytes.push_back(static_cast<char>(board || ball ? 150 + 20 * ((i + j + k) % 2) : (i * j + k) % 5));
-            }
     OpenWindow w;
     VolumeSource source;
-    source.path = folder.write("onboard.raw", bytes);
+    source.path = folder.write("onboard.raw", test::ballOnBoard());
     source.raw = RawLayout{{40, 40, 40}, SampleType::U8, false, {1, 1, 1}, 0};
     w.opening().openVolume(source);
     REQUIRE(waitFor([&] { return w.document().volume()->title == "onboard.raw"; }));
