@@ -1,6 +1,4 @@
 // `propose`: the automatic start as text, as JSON and as a file that the other commands take.
-#include <cmath>
-
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"
