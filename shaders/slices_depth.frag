@@ -3,6 +3,7 @@
 // The vertex shader is composite.vert; the rectangle that the slab may be seen in is the scissor's.
 #include "include/candidates.glsl"
 #include "include/volume.glsl"
+#include "include/passage.glsl"
 #include "include/view_rays.glsl"
 #include "include/resident.glsl"
 #include "include/ray_depth.glsl"

@@ -8,6 +8,7 @@
 #include "include/candidates.glsl"
 #include "include/opacity.glsl"
 #include "include/volume.glsl"
+#include "include/passage.glsl"
 #include "include/view_rays.glsl"
 #include "include/resident.glsl"
 #include "include/ray_depth.glsl"
@@ -45,11 +46,7 @@ bool onFace(ivec3 voxel) {
 bool isKept(ivec3 voxel) {
     for (int i = 6; i < u_sideCount; ++i)
         if (dot(u_sides[i].xyz, vec3(voxel)) - u_sides[i].w > kClipTie) return false;
-#ifdef FAINT
-    for (int i = 0; i < u_faintCount; ++i)
-        if (dot(u_faint[i].xyz, vec3(voxel)) - u_faint[i].w > kClipTie) return false;
-#endif
-    return true;
+    return !isFaint(vec3(voxel));
 }
 
 vec2 pixelOf(vec3 local) {

@@ -8,6 +8,7 @@
 #include "include/candidates.glsl"
 #include "include/opacity.glsl"
 #include "include/volume.glsl"
+#include "include/passage.glsl"
 #include "include/rays.glsl"
 #include "include/resident.glsl"
 #include "include/ray_depth.glsl"

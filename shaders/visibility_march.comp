@@ -4,6 +4,7 @@
 // One invocation per ray. Planes take turns in u_ring layers of the buffer.
 #include "include/candidates.glsl"
 #include "include/volume.glsl"
+#include "include/passage.glsl"
 #include "include/rays.glsl"
 #include "include/resident.glsl"
 #include "include/ray_depth.glsl"

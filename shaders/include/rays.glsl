@@ -3,7 +3,7 @@
 //                   to dims - 0.5
 //   ray             fixed by the point (a, b) where it meets the reference plane c = u_reference
 //   CLIPPED         planes cut the volume
-//   FAINT           what lies beyond other planes is thinned
+//   Needs passage.glsl.
 layout(location = 1) uniform vec4 u_eye;        // xyz: the eye in q (perspective); w: 1 perspective, 0 orthographic
 layout(location = 2) uniform vec2 u_shear;      // orthographic: change of (a, b) per unit of c
 layout(location = 3) uniform float u_reference; // c of the reference plane
@@ -47,16 +47,9 @@ float lengthPerC(Ray ray) {
     return length(u_worldFromQ * vec3(ray.slope, 1.0));
 }
 
-const int kMostPlanes = 12;
-const float kClipTie = 1e-3; // C++: src/render/clipping.h
 #ifdef CLIPPED
 layout(location = 28) uniform int u_planeCount;
 layout(location = 29) uniform vec4 u_clip[kMostPlanes]; // dot(xyz, q) - w is how far q lies beyond, in d0
-#endif
-#ifdef FAINT
-layout(location = 47) uniform float u_faintDensity; // what lies beyond the planes keeps of its optical depth
-layout(location = 48) uniform int u_faintCount;
-layout(location = 49) uniform vec4 u_faint[kMostPlanes];
 #endif
 
 // Whether the centre of a voxel is kept, and not faint.
@@ -65,19 +58,8 @@ bool isKept(ivec3 q) {
     for (int i = 0; i < u_planeCount; ++i)
         if (dot(u_clip[i].xyz, vec3(q)) - u_clip[i].w > kClipTie) return false;
 #endif
-#ifdef FAINT
-    for (int i = 0; i < u_faintCount; ++i)
-        if (dot(u_faint[i].xyz, vec3(q)) - u_faint[i].w > kClipTie) return false;
-#endif
-    return true;
+    return !isFaint(vec3(q));
 }
-
-// How a ray passes through the box, and through what clipping leaves of it: c where it enters, c where it leaves. The
-// sides by which it leaves are moved outward by `margin` voxels: just outside the box a ray goes on as the volume's
-// edge, and behind a clip plane through what is clipped, so that interpolating between rays meets no jump there.
-struct Passage {
-    float enter, leave;
-};
 
 // Takes of a passage what lies beyond a plane: dot(xyz, q) - w is how far q does.
 void cutPassage(inout Passage p, Ray ray, vec4 plane, float margin) {
@@ -94,16 +76,9 @@ void cutPassage(inout Passage p, Ray ray, vec4 plane, float margin) {
     }
 }
 
-#ifdef FAINT
-Passage g_clear; // of the ray that passageOf() was asked about last: where nothing is faint
-
-// What of its own the part of that ray between two c, either way round, keeps.
-float thinned(float from, float to) {
-    float within = min(max(from, to), g_clear.leave) - max(min(from, to), g_clear.enter);
-    return mix(u_faintDensity, 1.0, clamp(within / max(abs(to - from), 1e-9), 0.0, 1.0));
-}
-#endif
-
+// How a ray passes through the box, and through what clipping leaves of it: c where it enters, c where it leaves. The
+// sides by which it leaves are moved outward by `margin` voxels: just outside the box a ray goes on as the volume's
+// edge, and behind a clip plane through what is clipped, so that interpolating between rays meets no jump there.
 Passage passageOf(Ray ray, float margin) {
     Passage p = Passage(u_front, float(u_dims.z) - 0.5);
     for (int axis = 0; axis < 2; ++axis) {

@@ -51,13 +51,6 @@ float lengthPerC(Ray ray) {
     return ray.length;
 }
 
-// How a ray passes through what is kept of the box: c where it enters, c where it leaves. The sides by which it leaves
-// are moved outward by `margin` d0, so that interpolating between rays meets no jump there.
-struct Passage {
-    float enter, leave;
-};
-const float kClipTie = 1e-3; // C++: src/render/clipping.h
-
 // Takes of a passage what lies beyond a plane: dot(xyz, voxel) - w is how far a point does.
 void cutPassage(inout Passage p, Ray ray, vec4 plane, float margin) {
     float beyond = dot(plane.xyz, ray.at) - plane.w, rate = dot(plane.xyz, ray.slope);
@@ -72,20 +65,8 @@ void cutPassage(inout Passage p, Ray ray, vec4 plane, float margin) {
     }
 }
 
-#ifdef FAINT
-const int kMostPlanes = 12;
-layout(location = 47) uniform float u_faintDensity; // what lies beyond the planes keeps of its optical depth
-layout(location = 48) uniform int u_faintCount;
-layout(location = 49) uniform vec4 u_faint[kMostPlanes];
-Passage g_clear; // of the ray that passageOf() was asked about last: where nothing is faint
-
-// What of its own the part of that ray between two c, either way round, keeps.
-float thinned(float from, float to) {
-    float within = min(max(from, to), g_clear.leave) - max(min(from, to), g_clear.enter);
-    return mix(u_faintDensity, 1.0, clamp(within / max(abs(to - from), 1e-9), 0.0, 1.0));
-}
-#endif
-
+// How a ray passes through what is kept of the box: c where it enters, c where it leaves. The sides by which it leaves
+// are moved outward by `margin` d0, so that interpolating between rays meets no jump there.
 Passage passageOf(Ray ray, float margin) {
     Passage p = Passage(0.0, u_slices.z);
     for (int i = 0; i < u_sideCount; ++i) cutPassage(p, ray, u_sides[i], margin);
