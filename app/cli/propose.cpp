@@ -98,8 +98,7 @@ Answer run(const Options& o, Progress& progress) {
     Proposal proposal = propose(volume, progress.phase("looking at the data"));
     const Volume seen = proposal.window == volume.range() ? volume : volume.withRange(proposal.window);
     const std::optional<Holder> holder = findHolder(seen, proposal.tf);
-    View home(openingView(seen, proposal.tf));
-    if (holder) home.clipping.rest.within = holder->without;
+    const View home = openingView(seen, proposal.tf, holder);
     const FirstSight sight = withOpacitiesForView(seen, proposal, proposal.tf, home);
     proposal.tf = sight.tf;
     if (holder) proposal.why.push_back(textOf(*holder));

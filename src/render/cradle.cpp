@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "render/view_direction.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -76,22 +76,11 @@ Parts partsOf(const Grid<std::uint8_t>& drawn) {
     return parts;
 }
 
-/// Evenly over the sphere.
-std::vector<Vec3> directionsAround(int count) {
-    const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
-    std::vector<Vec3> directions;
-    for (int n = 0; n < count; ++n) {
-        const double z = 1 - (2 * n + 1.0) / count, r = std::sqrt(1 - z * z);
-        directions.push_back({r * std::cos(n * turn), r * std::sin(n * turn), z});
-    }
-    return directions;
-}
-
 /// Planes that touch a body, chosen one after the other so that each cuts off as many of the thin cells as it can.
 class Planes {
 public:
     Planes(std::span<const Vec3> body, double room) {
-        for (const Vec3& normal : directionsAround(300)) {
+        for (const Vec3& normal : spreadDirections(300)) {
             double most = -std::numeric_limits<double>::infinity();
             for (const Vec3& p : body) most = std::max(most, glm::dot(normal, p));
             m_all.push_back({normal, most + room});
@@ -188,8 +177,9 @@ std::optional<Holder> findCradle(const Geometry& geometry, const CellGrid& grid,
         for (const Vec3& p : points) sum += p;
         return sum / static_cast<double>(points.size());
     };
-    holder.toward = middle(places(cells)) - middle(body);
-    holder.toward = glm::normalize(holder.toward);
+    const Vec3 apart = middle(places(cells)) - middle(body);
+    if (glm::length(apart) < glm::length(cell)) return {}; // it lies all around
+    holder.toward = glm::normalize(apart);
     double most = -1;
     for (int a = 0; a < 3; ++a) {
         const double along = glm::dot(holder.toward, geometry.directions[a]);

@@ -13,8 +13,9 @@ Camera fittedView(const Scene& scene, const Camera& camera, const JobControl& jo
 }
 
 Camera homeView(const Scene& scene, Projection projection, const JobControl& job) {
-    const Camera home = openingView(*scene.volume, shownTf(scene.tf), job);
-    return fittedView(scene, withProjection(home, scene.volume->geometry(), projection), job);
+    const TransferFunction tf = shownTf(scene.tf);
+    const View home = openingView(*scene.volume, tf, findHolder(*scene.volume, tf, job), job);
+    return fittedView(scene, withProjection(home.camera, scene.volume->geometry(), projection), job);
 }
 
 } // namespace pellucid

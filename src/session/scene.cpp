@@ -214,30 +214,34 @@ namespace {
 
 /// What a scene that has a proposal opens with, wherever somebody looks at it from and whatever is cut away: a volume
 /// has one automatic start.
-Camera openingViewOf(const Scene& scene, const JobControl& job) {
-    return openingView(*scene.volume, scene.proposal->tf, {job.stop, {}});
+struct Opening {
+    std::optional<Holder> holder; ///< what the object lies on
+    View view;
+
+    /// Like the rest of what is drawn.
+    void drawHolder() {
+        holder.reset();
+        view.clipping.rest = {};
+    }
+};
+
+Opening openingOf(const Scene& scene, const JobControl& job) {
+    const std::optional<Holder> holder = findHolder(*scene.volume, scene.proposal->tf, {job.stop, {}});
+    return {holder, openingView(*scene.volume, scene.proposal->tf, holder, {job.stop, {}})};
 }
 
-FirstSight tunedFrom(const Scene& scene, const Camera& home, const std::optional<Holder>& holder,
-                     const JobControl& job) {
-    View view = home;
-    if (holder) view.clipping.rest.within = holder->without;
-    FirstSight sight = withOpacitiesForView(*scene.volume, *scene.proposal, scene.tf, view, {job.stop, {}});
-    if (holder) sight.rest = faintRest(*holder, *scene.volume, sight.tf, {job.stop, {}});
+FirstSight tunedFrom(const Scene& scene, const Opening& opening, const JobControl& job) {
+    FirstSight sight = withOpacitiesForView(*scene.volume, *scene.proposal, scene.tf, opening.view, {job.stop, {}});
+    if (opening.holder) sight.rest = faintRest(*opening.holder, *scene.volume, sight.tf, {job.stop, {}});
     return sight;
-}
-
-/// What the object lies on.
-std::optional<Holder> holderOf(const Scene& scene, const JobControl& job) {
-    return findHolder(*scene.volume, scene.proposal->tf, {job.stop, {}});
 }
 
 } // namespace
 
 FirstSight tunedStart(const Scene& scene, const JobControl& job) {
-    std::optional<Holder> holder;
-    if (!scene.session.clipping->rest.isNone()) holder = holderOf(scene, job);
-    return tunedFrom(scene, openingViewOf(scene, job), holder, job);
+    Opening opening = openingOf(scene, job);
+    if (scene.session.clipping->rest.isNone()) opening.drawHolder();
+    return tunedFrom(scene, opening, job);
 }
 
 void setStart(Session& session, const FirstSight& start) {
@@ -334,16 +338,17 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     }
     // Under a transfer function that somebody gives it is the box that fits, so that the figures of several compare.
     std::optional<Camera> home;
-    if (scene.proposal) home = openingViewOf(scene, job);
-    std::optional<Holder> holder;
-    const bool findsHolder = scene.proposal && scene.session.clipping->rest.isNone() && inputs.holder != 1.0;
-    if (findsHolder) holder = holderOf(scene, job);
-    if (inputs.start == SceneInputs::Start::Tuned && scene.proposal) {
-        setStart(scene.session, tunedFrom(scene, *home, holder, job));
-        resolveTf(scene);
-    } else if (holder) {
-        const FaintRest rest = faintRest(*holder, *scene.volume, scene.tf, {job.stop, {}});
-        scene.session.clipping.edit([&](Clipping& c) { c.rest = rest; });
+    if (scene.proposal) {
+        Opening opening = openingOf(scene, job);
+        home = opening.view.camera;
+        if (!scene.session.clipping->rest.isNone() || inputs.holder == 1.0) opening.drawHolder();
+        if (inputs.start == SceneInputs::Start::Tuned) {
+            setStart(scene.session, tunedFrom(scene, opening, job));
+            resolveTf(scene);
+        } else if (opening.holder) {
+            const FaintRest rest = faintRest(*opening.holder, *scene.volume, scene.tf, {job.stop, {}});
+            scene.session.clipping.edit([&](Clipping& c) { c.rest = rest; });
+        }
     }
     if (inputs.holder && !scene.session.clipping->rest.isNone())
         scene.session.clipping.edit([&](Clipping& c) {

@@ -54,7 +54,7 @@ TEST_CASE("what hides nothing is shown least wholly, what hides something is not
 
 TEST_CASE("a volume opens from where the feature that is seen least is seen most", "[opening view]") {
     const auto volume = plateBeforeBlock();
-    const Camera camera = openingView(*volume, twoSolids());
+    const Camera camera = openingView(*volume, twoSolids(), {}).camera;
     CHECK(shownLeast(*volume, twoSolids(), usual(*volume)) < 0.05); // the block is hidden
     CHECK(-camera.forward().y > 0.1);                               // from behind the plate it is in front
     CHECK(shownLeast(*volume, twoSolids(), camera) > 0.5);
@@ -67,7 +67,7 @@ TEST_CASE("a volume opens from where the feature that is seen least is seen most
 
 TEST_CASE("a patient is seen from the usual direction, whatever hides what", "[opening view]") {
     const auto volume = plateBeforeBlock(WorldAxes::Patient);
-    const Camera camera = openingView(*volume, twoSolids());
+    const Camera camera = openingView(*volume, twoSolids(), {}).camera;
     CHECK(glm::length(camera.forward() - usual(*volume).forward()) < 1e-9);
 }
 
@@ -76,21 +76,21 @@ TEST_CASE("what looks alike from everywhere opens from the usual direction", "[o
         const double r = glm::length(Vec3(i, j, k) - 19.5);
         return r < 8 ? 0.8 : r < 16 ? 0.2 : 0.5;
     });
-    CHECK(glm::length(openingView(*balls, twoSolids(0.05)).forward() - usual(*balls).forward()) < 1e-9);
+    CHECK(glm::length(openingView(*balls, twoSolids(0.05), {}).camera.forward() - usual(*balls).forward()) < 1e-9);
     // Neither is a choice made where nothing is drawn.
     const auto nothing = slab(Int3(8), 0.5);
-    CHECK(glm::length(openingView(*nothing, twoSolids()).eye - usual(*nothing).eye) < 1e-6);
+    CHECK(glm::length(openingView(*nothing, twoSolids(), {}).camera.eye - usual(*nothing).eye) < 1e-6);
 }
 
 TEST_CASE("the same view for any number of threads, and none where it is stopped", "[opening view]") {
     const auto volume = plateBeforeBlock();
     setThreadCount(1);
-    const Camera one = openingView(*volume, twoSolids());
+    const Camera one = openingView(*volume, twoSolids(), {}).camera;
     setThreadCount(5);
-    const Camera five = openingView(*volume, twoSolids());
+    const Camera five = openingView(*volume, twoSolids(), {}).camera;
     setThreadCount(0);
     CHECK(one == five);
     std::stop_source stop;
     stop.request_stop();
-    CHECK_THROWS_AS(openingView(*volume, twoSolids(), {stop.get_token(), {}}), Cancelled);
+    CHECK_THROWS_AS(openingView(*volume, twoSolids(), {}, {stop.get_token(), {}}), Cancelled);
 }

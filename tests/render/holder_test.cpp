@@ -143,11 +143,16 @@ TEST_CASE("a head rest that bends around a head is found, and planes part it fro
 
 TEST_CASE("what is thin and beside something is no head rest by that alone", "[holder]") {
     const auto isFound = [](const Solid& s) { return findHolder(*made(s, Int3(64)), solid()).has_value(); };
-    // A wire from border to border; a shell that ends inside the data; one around the whole head.
+    // A wire from border to border; a shell that ends inside the data; two on opposite sides of the head, neither of
+    // which it lies on.
     CHECK_FALSE(isFound([](const Vec3& v) { return inBall(v, Vec3(32), 18) || std::hypot(v.x - 8, v.y - 8) < 1.5; }));
     CHECK_FALSE(isFound([](const Vec3& v) {
         const double r = std::hypot(v.x - 32, v.y - 30);
         return inBall(v, {32, 30, 32}, 15) || (r > 21 && r < 22.5 && v.y > 34 && v.z > 12 && v.z < 52);
+    }));
+    CHECK_FALSE(isFound([](const Vec3& v) {
+        const double r = std::hypot(v.x - 31.5, v.y - 31.5);
+        return inBall(v, Vec3(31.5), 15) || (r > 21 && r < 22.5 && std::abs(v.y - 31.5) > 8);
     }));
     // Nor is anything where all is thin.
     CHECK_FALSE(isFound([](const Vec3& v) { return std::abs(glm::length(v - Vec3(32, 32, v.z)) - 20) < 0.8; }));

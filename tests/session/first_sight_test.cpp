@@ -67,9 +67,7 @@ Look lookAt(const Volume& data) {
     const auto volume = std::make_shared<const Volume>(
         data.dataRange().lo < data.dataRange().hi ? data.withRange(proposal.window) : data);
     // What an object lies on is faint, and no part of it.
-    const std::optional<Holder> holder = findHolder(*volume, proposal.tf);
-    View home(openingView(*volume, proposal.tf));
-    if (holder) home.clipping.rest.within = holder->without;
+    const View home = openingView(*volume, proposal.tf, findHolder(*volume, proposal.tf));
     const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, home).tf;
     tf.validate();
     const auto draw = [&](const std::shared_ptr<const Volume>& v, const TransferFunction& t, bool transparent) {

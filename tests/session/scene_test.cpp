@@ -286,7 +286,7 @@ TEST_CASE("the camera: what is asked for, else the session's, else the home view
     SceneInputs in = files.inputs();
     const Scene home = openScene(in);
     const Geometry geometry = home.volume->geometry();
-    const Camera opening = openingView(*home.volume, home.proposal->tf);
+    const Camera opening = openingView(*home.volume, home.proposal->tf, {}).camera;
     CHECK(home.camera == opening);
     CHECK_FALSE(home.session.camera);
     in.projection = Projection::Orthographic;

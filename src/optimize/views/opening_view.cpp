@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -11,7 +10,6 @@
 #include "render/camera_motion.h"
 #include "render/drawn_cells.h"
 #include "render/drawn_part.h"
-#include "render/holder.h"
 #include "render/view_direction.h"
 
 namespace pellucid {
@@ -51,16 +49,16 @@ double shownLeast(const Volume& volume, const TransferFunction& tf, const View& 
     return least * std::sqrt(std::sqrt(rays.rays()) / kRaysAlongSide);
 }
 
-Camera openingView(const Volume& volume, const TransferFunction& tf, const JobControl& job) {
+View openingView(const Volume& volume, const TransferFunction& tf, const std::optional<Holder>& holder,
+                 const JobControl& job) {
     constexpr double kClearly = 1.1;    // times as much
     constexpr double kFromBelow = 1.15; // times as much must be seen from below the horizon to be worth it
     const Geometry& geometry = volume.geometry();
     const Camera usual = homeCamera(geometry, Projection::Perspective);
-    const std::optional<Holder> holder = findHolder(volume, tf, job);
     Clipping clipping;
     if (holder) clipping.rest.within = holder->without;
     const DrawnPart part = drawnPart(volume, tf, clipping, job);
-    const Camera fitting = fittedTo(part, usual, geometry);
+    const View fitting(fittedTo(part, usual, geometry), clipping);
     if (geometry.worldAxes == WorldAxes::Patient || part.empty() || tf.features.empty()) return fitting;
 
     struct Candidate {
@@ -79,10 +77,11 @@ Camera openingView(const Volume& volume, const TransferFunction& tf, const JobCo
         candidates.push_back({camera, shown, -glm::dot(toEye, usual.forward())});
     }
     const double most = std::ranges::max_element(candidates, {}, &Candidate::shown)->shown;
-    if (!isBesideHolder(-usual.forward()) && shownLeast(volume, even, fitting, job) * kClearly >= most) return fitting;
+    if (!isBesideHolder(-usual.forward()) && shownLeast(volume, even, fitting.camera, job) * kClearly >= most)
+        return fitting;
     // Of those that are about as good, the one nearest to the usual direction.
     std::erase_if(candidates, [&](const Candidate& c) { return c.shown * kClearly < most; });
-    return std::ranges::max_element(candidates, {}, &Candidate::turned)->camera;
+    return {std::ranges::max_element(candidates, {}, &Candidate::turned)->camera, clipping};
 }
 
 } // namespace pellucid

@@ -128,35 +128,6 @@ void validate(const ViewSubject& subject, const ViewMetric& metric) {
 
 } // namespace
 
-std::vector<Vec3> spreadDirections(int count) {
-    if (count < 1 || count > kMostSphereViews)
-        throw UsageError("the number of views is not from 1 to " + std::to_string(kMostSphereViews), "views",
-                         "correct it");
-    const auto n = static_cast<std::size_t>(count);
-    std::vector<Vec3> lattice(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(n);
-        const double turn = 2 * kPi * std::fmod(static_cast<double>(i) / std::numbers::phi, 1.0);
-        const double r = std::sqrt(std::max(0.0, 1 - z * z));
-        lattice[i] = {r * std::cos(turn), r * std::sin(turn), z};
-    }
-    // Each next one is the one farthest from all before it.
-    std::vector<Vec3> ordered;
-    std::vector<double> nearest(n, -2); // cosine of the angle to the nearest one taken
-    std::size_t next = 0;
-    for (std::size_t taken = 0; taken < n; ++taken) {
-        ordered.push_back(lattice[next]);
-        nearest[next] = 2;
-        std::size_t farthest = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            nearest[i] = std::max(nearest[i], glm::dot(lattice[i], ordered.back()));
-            if (nearest[i] < nearest[farthest]) farthest = i;
-        }
-        next = farthest;
-    }
-    return ordered;
-}
-
 std::vector<double> ViewMetric::figuresOf(const FeatureSums& sums, const VwsOptions& options) const {
     if (figure != Figure::Visibility) return vwsOf(sums, options);
     std::vector<double> shares = sums.visibility;

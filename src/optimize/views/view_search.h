@@ -8,16 +8,12 @@
 #include "base/enum_names.h"
 #include "optimize/optimizer.h"
 #include "render/view.h"
+#include "render/view_direction.h"
 #include "render/visibility.h"
 
 namespace pellucid {
 
-inline constexpr int kSphereViews = 256;      ///< directions of a map, unless somebody asks for others
-inline constexpr int kMostSphereViews = 4096; ///< at most
-
-/// `count` unit vectors, 1 to kMostSphereViews, evenly spread over the sphere: a Fibonacci lattice. They come in an
-/// order from coarse to fine: the first n of them are spread over all of the sphere, for any n. Always the same.
-std::vector<Vec3> spreadDirections(int count);
+inline constexpr int kSphereViews = 256; ///< directions of a map, unless somebody asks for others
 
 /// What a view is judged by.
 struct ViewMetric {
