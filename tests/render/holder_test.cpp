@@ -152,7 +152,7 @@ TEST_CASE("what is thin and beside something is no head rest by that alone", "[h
     }));
     CHECK_FALSE(isFound([](const Vec3& v) {
         const double r = std::hypot(v.x - 31.5, v.y - 31.5);
-        return inBall(v, Vec3(31.5), 15) || (r > 21 && r < 22.5 && std::abs(v.y - 31.5) > 8);
+        return inBall(v, Vec3(31.5), 18) || (r > 21 && r < 22.2 && std::abs(v.y - 31.5) > 13);
     }));
     // Nor is anything where all is thin.
     CHECK_FALSE(isFound([](const Vec3& v) { return std::abs(glm::length(v - Vec3(32, 32, v.z)) - 20) < 0.8; }));
