@@ -111,7 +111,7 @@ void checkRefining(const Options& o, const Session& session) {
                          "add --mode refine, or leave it out");
 }
 
-/// Of ranks all do the same at the same time: nothing is read ahead, and no frames are made side by side.
+/// Of ranks all read the same at the same time, or each its own: nothing is read ahead.
 bool isOneOfSeveral() { return ranksOfProcess() != nullptr; }
 
 /// The frame that is read while others are computed.
@@ -139,12 +139,31 @@ private:
 /// One frame on its way.
 struct Frame {
     int number = 0;
-    std::string problem;
-    Scene scene, asStatic;                  ///< the second one with --compare
-    std::optional<TransferFunction> before; ///< of the frame that flicker compares it with
+    std::string problem; ///< why it cannot be read
+    TransferFunction tf;
     std::optional<AdaptedFrame> made;
+    Scene scene, asStatic;                  ///< of the process whose frame this is; the second one with --compare
+    std::optional<TransferFunction> before; ///< of the frame that flicker compares it with
     FrameFigures figures, staticFigures;
 };
+
+/// What is found out where a frame is drawn, for other processes.
+Json told(const FrameFigures& f) {
+    Json json{{"vws", f.vws},         {"visibility", f.visibility}, {"opacity", f.opacity},    {"fs", f.fs},
+              {"targets", f.targets}, {"empty", f.empty},           {"objective", f.objective}};
+    if (f.flicker) json["flicker"] = *f.flicker;
+    return json;
+}
+void take(const Json& json, FrameFigures& f) {
+    json["vws"].get_to(f.vws);
+    json["visibility"].get_to(f.visibility);
+    json["opacity"].get_to(f.opacity);
+    json["fs"].get_to(f.fs);
+    json["targets"].get_to(f.targets);
+    f.empty = json["empty"].get<std::vector<bool>>();
+    json["objective"].get_to(f.objective);
+    if (json.contains("flicker")) f.flicker = json["flicker"].get<double>();
+}
 
 class Sequence {
 public:
@@ -156,7 +175,15 @@ public:
 private:
     void prepareKey();
     void plan(ReadAhead& ahead);
-    std::optional<Frame> next(int number);
+    std::vector<Json> gatherAll(const Json& mine) const;
+    void readTogether(int frame) const;
+    bool isMine(const Frame& frame) const { return m_work.isMine(static_cast<std::size_t>(frame.number - m_start)); }
+    void open(Frame& frame) const;
+    void follow(Frame& frame);
+    Frame next(int number);
+    void agree(std::vector<Frame>& batch) const;
+    void draw(Frame& frame, Workspace& workspace) const;
+    void gather(std::vector<Frame>& batch) const;
     Json jsonOf(const Frame& frame) const;
     void finish(std::vector<Frame>& batch);
     void tellMissed(const SequenceFigures& figures);
@@ -165,6 +192,11 @@ private:
     Json json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
 
     const AdaptSettings& settings() const { return *m_scene.session.adapt; }
+    /// Whether transfer functions are there before frames are read.
+    bool knowsTfs() const { return settings().mode == Mode::Static || smooths(settings()); }
+    SharedWork divided() const;
+    /// While one of these lives other ranks have frames of their own, where frames are divided.
+    std::unique_ptr<WorkAlone> apart() const { return m_work.parts > 1 ? std::make_unique<WorkAlone>() : nullptr; }
 
     const Options& m_o;
     Scene m_scene; ///< of the start frame; its session has all transfer functions that there are so far
@@ -172,6 +204,7 @@ private:
     int m_start = 0;
     double m_keySeconds = 0;
     SequenceMaker m_maker;
+    SharedWork m_work; ///< what of the frames this process draws and measures
     std::vector<Workspace> m_sideBySide;
     TransferFunction m_fixed;                          ///< of the start frame, as static
     std::optional<TransferFunction> m_before, m_chain; ///< of the frame before; what the next one starts from
@@ -180,7 +213,6 @@ private:
     std::vector<FrameFigures> m_figures, m_static;
     std::vector<int> m_afterGaps; ///< frames whose flicker is not told
     Json m_priority;              ///< that of the first frame that was refined
-    FrameFigures m_broken;        ///< of the latest frame that next() could not read
     std::vector<std::string> m_notices;
     std::vector<Json> m_frames;
     std::vector<std::string> m_pictures;
@@ -242,44 +274,106 @@ void Sequence::plan(ReadAhead& ahead) {
     }
 }
 
-/// The frame with its transfer function, ready to be drawn and measured; empty where it is broken.
-std::optional<Frame> Sequence::next(int number) {
+/// Whoever has read a frame of his own may have forgotten others that his neighbours still have, so that ranks that go
+/// on together may read none but the next one.
+SharedWork Sequence::divided() const {
+    const Session& session = m_scene.session;
+    const bool needsOthers = session.variables->size() > 1 || session.variable().derivation || session.hsb->on ||
+                             (settings().mode == Mode::Refine && session.refine->region);
+    if (m_scene.volume->elsewhere() != nullptr || (needsOthers && !knowsTfs())) return {};
+    return workOfProcess();
+}
+
+/// The elements of the lists of all processes.
+std::vector<Json> Sequence::gatherAll(const Json& mine) const {
+    const std::vector<std::uint8_t> bytes = Json::to_cbor(mine);
+    std::vector<Json> all;
+    for (const auto& other : m_work.gather(std::as_bytes(std::span(bytes)))) {
+        const auto* const data = reinterpret_cast<const std::uint8_t*>(other.data());
+        for (Json& json : Json::from_cbor(data, data + other.size())) all.push_back(std::move(json));
+    }
+    return all;
+}
+
+/// Reads the frame where ranks go on together: all, or none.
+void Sequence::readTogether(int frame) const {
+    if (m_work.parts == 1) return;
+    std::string problem;
+    {
+        const WorkAlone alone;
+        try {
+            m_scene.series->load(frame, {interruptToken(), {}});
+        } catch (const FileError& error) {
+            problem = error.problem();
+        }
+    }
+    for (const auto& other : m_work.gather(std::as_bytes(std::span(problem))))
+        if (!other.empty())
+            throw FileError({reinterpret_cast<const char*>(other.data()), other.size()},
+                            m_scene.series->listing().fileOf(frame), "check the file");
+}
+
+/// Reads the frame, ready to be drawn and measured.
+void Sequence::open(Frame& frame) const {
     const JobControl job{interruptToken(), {}};
+    frame.scene = sceneAt(m_scene, frame.number, frame.tf, job);
+    if (m_o.compare) frame.asStatic = sceneAt(frame.scene, frame.number, m_fixed, job);
+}
+
+/// Gives the frame its transfer function, which comes from that of the frame before. All processes go along.
+void Sequence::follow(Frame& frame) {
+    const TfTrack& track = m_scene.session.variable().track;
+    const int number = frame.number;
+    // Broken or not, what follows a key begins there.
+    if (track.keys.contains(number) || !m_chain) m_chain = *track.keys.at(track.keyBefore(number));
+    readTogether(number);
+    AdaptTask task{number, track.keyBefore(number), *m_chain, {}};
+    task.basis = frameFingerprint(m_scene.session, *m_scene.series, number, *m_chain);
+    const auto known = track.adapted.find(number); // a session brings some
+    if (known != track.adapted.end() && known->second.basis == task.basis) {
+        frame.tf = *known->second.tf;
+    } else {
+        frame.made = m_maker.adapter().adapt(m_scene, task, m_maker.workspace(), {interruptToken(), {}});
+        frame.tf = frame.made->tf;
+    }
+    open(frame);
+    m_chain = frame.scene.tf;
+    if (!isMine(frame)) frame.scene = frame.asStatic = {};
+}
+
+/// The frame with its transfer function, ready to be drawn and measured if it is this process's.
+Frame Sequence::next(int number) {
     Frame frame;
     frame.number = number;
     try {
-        TransferFunction tf;
-        const TfTrack& track = m_scene.session.variable().track;
-        if (settings().mode == Mode::Static || smooths(settings())) {
-            tf = *m_scene.session.tfAt(number);
-            if (const auto planned = m_planned.find(number); planned != m_planned.end()) frame.made = planned->second;
-        } else {
-            // Broken or not, what follows a key begins there.
-            if (track.keys.contains(number) || !m_chain) m_chain = *track.keys.at(track.keyBefore(number));
-            AdaptTask task{number, track.keyBefore(number), *m_chain, {}};
-            task.basis = frameFingerprint(m_scene.session, *m_scene.series, number, *m_chain);
-            const auto known = track.adapted.find(number); // a session brings some
-            if (known != track.adapted.end() && known->second.basis == task.basis) {
-                tf = *known->second.tf;
-            } else {
-                frame.made = m_maker.adapter().adapt(m_scene, task, m_maker.workspace(), job);
-                tf = frame.made->tf;
-            }
+        if (!knowsTfs()) {
+            follow(frame);
+            return frame;
         }
-        frame.scene = sceneAt(m_scene, number, tf, job);
-        if (m_o.compare) frame.asStatic = sceneAt(frame.scene, number, m_fixed, job);
-        if (m_before && (m_o.overGaps || neighbourBefore(*m_scene.series, number, false) == m_beforeNumber))
-            frame.before = m_before;
-        else if (m_before)
-            m_afterGaps.push_back(number);
-        m_before = m_chain = frame.scene.tf;
-        m_beforeNumber = number;
-        return frame;
+        frame.tf = *m_scene.session.tfAt(number);
+        if (const auto planned = m_planned.find(number); planned != m_planned.end()) frame.made = planned->second;
+        if (!isMine(frame)) return frame;
+        const auto alone = apart();
+        open(frame);
     } catch (const FileError& error) {
         passOver(*m_scene.series, number, error);
-        m_broken = brokenFigures(*m_scene.series, number);
-        return {};
+        frame.problem = brokenFigures(*m_scene.series, number).problem;
     }
+    return frame;
+}
+
+/// On which frames are broken, and what flicker compares the others with.
+void Sequence::agree(std::vector<Frame>& batch) const {
+    if (m_work.parts == 1) return;
+    Json mine = Json::array();
+    for (const Frame& frame : batch)
+        if (isMine(frame) && !frame.problem.empty()) mine.push_back({frame.number, frame.problem});
+    for (const Json& broken : gatherAll(mine))
+        for (Frame& frame : batch) {
+            if (frame.number != broken[0].get<int>() || !frame.problem.empty()) continue;
+            frame.problem = broken[1].get<std::string>();
+            m_scene.series->noteProblem(frame.number, frame.problem);
+        }
 }
 
 Json Sequence::jsonOf(const Frame& frame) const {
@@ -307,46 +401,95 @@ Json Sequence::jsonOf(const Frame& frame) const {
                           {"visibility", frame.staticFigures.visibility},
                           {"objective", frame.staticFigures.objective}};
     if (m_o.compare && m_o.pictured) json["static"]["fs"] = frame.staticFigures.fs;
-    json["tf"] = Json(jsonFromTf(frame.scene.tf));
+    json["tf"] = Json(jsonFromTf(frame.tf));
     return json;
+}
+
+/// Figures and pictures.
+void Sequence::draw(Frame& frame, Workspace& workspace) const {
+    const JobControl job{interruptToken(), {}};
+    std::optional<TransferFunction> before;
+    if (frame.before) before = writtenFor(*frame.before, frame.scene.volume->range());
+    frame.figures = figuresOf(frame.scene, before ? &*before : nullptr, workspace, job);
+    if (m_o.compare) {
+        frame.staticFigures = figuresOf(frame.asStatic, nullptr, workspace, job);
+        if (before) frame.staticFigures.flicker = 0; // the same transfer function
+    }
+    writeTf(frame.scene.tf, fileOf(m_o, frame.number, kTfSuffix));
+    const auto drawAs = [&](const Scene& scene, const char* suffix, FrameFigures& figures) {
+        if (m_o.noPictures && !m_o.pictured) return;
+        const PictureInput picture = m_o.scene.picture.pictureOf(scene);
+        const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
+        Image image;
+        if (m_o.pictured) {
+            FeaturePictures pictures = featurePictures(*renderer, picture.camera, picture.tf, picture.settings, job);
+            figures.fs = featureSaliency(pictures, job).shares;
+            image = std::move(pictures.whole);
+        } else {
+            image = renderer->render(picture.camera, picture.tf, picture.settings, job);
+        }
+        if (!m_o.noPictures) writeImage(image, fileOf(m_o, frame.number, suffix));
+    };
+    drawAs(frame.scene, kPictureSuffix, frame.figures);
+    if (m_o.compare) drawAs(frame.asStatic, kStaticSuffix, frame.staticFigures);
+    frame.tf = frame.scene.tf;
+}
+
+/// What the processes have found out of their frames, for all.
+void Sequence::gather(std::vector<Frame>& batch) const {
+    if (m_work.parts == 1) return;
+    Json mine = Json::array();
+    for (const Frame& frame : batch)
+        if (isMine(frame) && frame.problem.empty())
+            mine.push_back({{"frame", frame.number},
+                            {"figures", told(frame.figures)},
+                            {"static", told(frame.staticFigures)},
+                            {"tf", jsonFromTf(frame.tf)}});
+    for (const Json& made : gatherAll(mine))
+        for (Frame& frame : batch) {
+            if (frame.number != made["frame"].get<int>() || isMine(frame)) continue;
+            frame.figures = brokenFigures(*m_scene.series, frame.number);
+            frame.figures.problem.clear();
+            frame.staticFigures = frame.figures;
+            take(made["figures"], frame.figures);
+            take(made["static"], frame.staticFigures);
+            frame.tf = tfFromJson(made["tf"], fileOf(m_o, frame.number, kTfSuffix));
+        }
 }
 
 /// Figures and pictures of frames, side by side.
 void Sequence::finish(std::vector<Frame>& batch) {
-    const JobControl job{interruptToken(), {}};
-    parallelFor(batch.size(), [&](std::size_t i) {
-        Frame& frame = batch[i];
-        Workspace& workspace = batch.size() == 1 ? m_maker.workspace() : m_sideBySide[i];
-        frame.figures = figuresOf(frame.scene, frame.before ? &*frame.before : nullptr, workspace, job);
+    agree(batch);
+    std::vector<Frame*> mine;
+    for (Frame& frame : batch) {
+        if (!frame.problem.empty()) continue;
+        if (m_before && (m_o.overGaps || neighbourBefore(*m_scene.series, frame.number, false) == m_beforeNumber))
+            frame.before = m_before;
+        else if (m_before)
+            m_afterGaps.push_back(frame.number);
+        m_before = frame.tf;
+        m_beforeNumber = frame.number;
+        if (isMine(frame)) mine.push_back(&frame);
+    }
+    {
+        const auto alone = apart();
+        // What the frames had their transfer functions from goes on with a single one, but not apart from other ranks.
+        const bool goesOn = mine.size() == 1 && m_work.parts == 1;
+        parallelFor(mine.size(),
+                    [&](std::size_t i) { draw(*mine[i], goesOn ? m_maker.workspace() : m_sideBySide[i]); });
+    }
+    gather(batch);
+    for (Frame& frame : batch) {
+        if (!frame.problem.empty()) {
+            m_figures.push_back(brokenFigures(*m_scene.series, frame.number));
+            if (m_o.compare) m_static.push_back(m_figures.back());
+            continue;
+        }
         if (frame.made) {
             frame.figures.moves = frame.made->moves;
             frame.figures.seconds = frame.made->seconds;
             if (frame.made->energy) frame.figures.energy = frame.made->energy->movableAfter;
         }
-        if (m_o.compare) {
-            frame.staticFigures = figuresOf(frame.asStatic, nullptr, workspace, job);
-            if (frame.before) frame.staticFigures.flicker = 0; // the same transfer function
-        }
-        writeTf(frame.scene.tf, fileOf(m_o, frame.number, kTfSuffix));
-        const auto draw = [&](const Scene& scene, const char* suffix, FrameFigures& figures) {
-            if (m_o.noPictures && !m_o.pictured) return;
-            const PictureInput picture = m_o.scene.picture.pictureOf(scene);
-            const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
-            Image image;
-            if (m_o.pictured) {
-                FeaturePictures pictures =
-                    featurePictures(*renderer, picture.camera, picture.tf, picture.settings, job);
-                figures.fs = featureSaliency(pictures, job).shares;
-                image = std::move(pictures.whole);
-            } else {
-                image = renderer->render(picture.camera, picture.tf, picture.settings, job);
-            }
-            if (!m_o.noPictures) writeImage(image, fileOf(m_o, frame.number, suffix));
-        };
-        draw(frame.scene, kPictureSuffix, frame.figures);
-        if (m_o.compare) draw(frame.asStatic, kStaticSuffix, frame.staticFigures);
-    });
-    for (const Frame& frame : batch) {
         if (m_priority.is_null() && frame.made && frame.made->energy)
             m_priority = m_o.priority.told(*m_scene.session.refine, frame.made->priority);
         m_frames.push_back(jsonOf(frame));
@@ -465,6 +608,7 @@ Json Sequence::json(const SequenceFigures& dynamic, const std::optional<Sequence
 Answer Sequence::run(const Opened& opened) {
     const Stopwatch total;
     prepareKey();
+    m_work = divided();
     std::error_code failure;
     fs::create_directories(m_o.out, failure);
     if (failure && !fs::is_directory(m_o.out))
@@ -476,25 +620,23 @@ Answer Sequence::run(const Opened& opened) {
     // Contexts of GL are not shared by threads; threads share a CPU well.
     const bool cpu = makeRenderer(m_scene.session.measure->engine, m_scene.volume)->name() == "cpu" &&
                      m_maker.workspace().engine(measureInput(m_scene)).name() != "gl";
-    const int most = cpu && !isOneOfSeveral() ? std::clamp(series.roomFor() - 1, 1, threadCount()) : 1;
+    const int most = m_work.parts > 1           ? static_cast<int>(m_work.parts)
+                     : cpu && !isOneOfSeveral() ? std::clamp(series.roomFor() - 1, 1, threadCount())
+                                                : 1;
     m_sideBySide = std::vector<Workspace>(static_cast<std::size_t>(most));
     std::vector<Frame> batch;
     for (int number = m_start; number < series.size(); ++number) {
         job.throwIfStopped();
         ahead.begin(number + 1);
-        if (auto frame = next(number)) {
-            batch.push_back(std::move(*frame));
-        } else {
-            finish(batch);
-            m_figures.push_back(m_broken);
-            if (m_o.compare) m_static.push_back(m_broken);
-        }
+        batch.push_back(next(number));
         if (static_cast<int>(batch.size()) == most) finish(batch);
         job.report((number + 1.0 - m_start) / (series.size() - m_start));
     }
     finish(batch);
-    if (m_priority.is_null() && settings().mode == Mode::Refine) // all frames were refined before
+    if (m_priority.is_null() && settings().mode == Mode::Refine) { // all frames were refined before
+        const auto alone = apart();
         m_priority = m_o.priority.told(*m_scene.session.refine, refinePriority(m_scene, {interruptToken(), {}}));
+    }
     if (m_frames.empty()) throw Error("no frame can be read", series.listing().title, "check its files");
 
     m_progress.phase("writing");
@@ -529,6 +671,7 @@ Answer run(const Options& o, Progress& progress) {
     if (o.adapt.values().mode == Mode::Optimize && !o.targets && !o.scene.sessionFile)
         throw isRequired("--target", "sequence");
     Opened opened;
+    divideFrames(true);
     SceneInputs inputs = inputsOf(o.scene, {toMeasureAndDrawField(), true}, opened.sessionNotices);
     if (o.from || !inputs.frame) inputs.frame = o.from.value_or(0); // wherever the session was left
     opened.scene = openScene(inputs, progress.phase("loading"));

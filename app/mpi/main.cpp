@@ -2,8 +2,8 @@
 // have of a volume differs. Rank 0 alone says anything and writes files, but for those that all write together
 // (base/joint_file.h).
 #include <algorithm>
+#include <limits>
 
-#include "base/atomic_file.h"
 #include "base/memory.h"
 #include "program.h"
 #include "ranks/mpi/mpi_communicator.h"
@@ -32,13 +32,17 @@ Outcome runOnRanks(const Program& program, const std::vector<std::string>& argum
     }
     setRanksOfProcess(&ranks);
     // Frames of a series that one rank forgets and another keeps could not be read together: all keep as many.
-    std::uint64_t budget = kMostForFrames;
-    for (const std::uint64_t free : gatherValues(ranks, availableMemoryBytes())) budget = std::min(budget, free / 4);
-    TimeSeries::setDefaultBudget(static_cast<std::size_t>(budget));
-    keepWrittenFiles(ranks.rank() == 0);
     static RankLayout layout;
-    setVolumeLoader([&ranks](const VolumeSource& source, const JobControl& job) {
-        return loadOnRanks(ranks, source, layout, job);
+    std::uint64_t budget = kMostForFrames;
+    layout.roomForFrame = std::numeric_limits<std::uint64_t>::max();
+    const auto beside = static_cast<std::uint64_t>(ranks.onThisMachine());
+    for (const std::uint64_t free : gatherValues(ranks, availableMemoryBytes() / beside)) {
+        budget = std::min(budget, free / 4);
+        layout.roomForFrame = std::min(layout.roomForFrame, free / 2);
+    }
+    TimeSeries::setDefaultBudget(static_cast<std::size_t>(budget));
+    setVolumeLoader([](const VolumeSource& source, const JobControl& job) {
+        return loadOnRanks(*ranksOfProcess(), source, layout, job);
     });
     return run(program, arguments);
 }

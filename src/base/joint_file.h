@@ -4,14 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
-#include <vector>
+
+#include "base/shared_work.h"
 
 namespace pellucid {
-
-/// The bytes of each process, for all, in an order that is the same for all. All processes call it, as often.
-using GatherBytes = std::function<std::vector<std::vector<std::byte>>(std::span<const std::byte>)>;
 
 /// A file while it is being written. What writeAt() has taken has reached the system, or FileError was thrown.
 class JointFile {

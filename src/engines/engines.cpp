@@ -1,6 +1,7 @@
 #include "engines/engines.h"
 
 #include "base/error.h"
+#include "engines/divided_work.h"
 #include "engines/renderer_probe.h"
 #include "ranks/block_balance.h"
 #include "ranks/process_ranks.h"
@@ -102,6 +103,8 @@ std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr
         return std::make_unique<GlElseCpu>(std::move(volume));
     return makeCpuRenderer(std::move(volume));
 }
+
+SharedWork dividedWork() { return workOfProcess(); }
 
 bool cutBlocksByWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, const MemoryUse& then,
                      const JobControl& job) {

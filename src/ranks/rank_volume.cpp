@@ -5,6 +5,7 @@
 #include <optional>
 #include <sstream>
 
+#include "ranks/process_ranks.h"
 #include "volume/excerpt.h"
 #include "volume/file_contents.h"
 #include "volume/volume_part.h"
@@ -86,6 +87,11 @@ Decomposition RankLayout::blocksOf(const Int3& dims, int ranks) const {
     return cut && cut->dims() == dims ? *cut : Decomposition(dims, ranks);
 }
 
+bool RankLayout::isWhole(const Int3& dims, SampleType type, const MemoryUse& then, int ranks) const {
+    if (ranks == 1 || voxelCount(dims) < smallest) return true;
+    return dividesFrames() && bytesOf(then, dims, type) + 2 * voxelCount(dims) * bytesPerSample(type) <= roomForFrame;
+}
+
 Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like, RankLayout* layout) {
     OfAll mine;
     mine.whole = block.whole;
@@ -125,7 +131,7 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, RankLayout& 
     if (source.isSample()) {
         // Made by a rule: each rank makes all of it, and keeps its block.
         Volume all = loadHere(source, job);
-        if (ranks.size() == 1 || all.size() < layout.smallest) return all;
+        if (layout.isWhole(all.dims(), all.sampleType(), source.then, ranks.size())) return all;
         const auto whole = std::make_shared<const Volume>(std::move(all));
         const Decomposition blocks = layout.blocksOf(whole->dims(), ranks.size());
         return volumeOfBlocks(ranks, blockOf(whole, blocks, ranks.rank(), ghosts), *whole, &layout);
@@ -133,8 +139,8 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, RankLayout& 
     const FileContents contents = readTogether(ranks, [&] { return contentsOf(source, job); });
     const VoxelRegion all = source.region.value_or(VoxelRegion{Int3(0), contents.dims});
     const Int3 dims = all.hi - all.lo;
-    const bool known = !isEmpty(all) && voxelCount(dims) >= layout.smallest;
-    if (ranks.size() == 1 || !known) return readTogether(ranks, [&] { return loadHere(source, job); });
+    if (isEmpty(all) || layout.isWhole(dims, contents.type, source.then, ranks.size()))
+        return readTogether(ranks, [&] { return loadHere(source, job); });
     if (source.downsample > 1)
         throw UsageError("ranks read data as they are", "--downsample", "leave it out, or use pellucid-cli");
 

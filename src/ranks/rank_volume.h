@@ -17,8 +17,13 @@ struct RankLayout {
     std::size_t smallest = 128 * 128 * 128;
     /// Of volumes with these extents, see cutByWork(); others, and all while it is empty, in equal blocks.
     std::optional<Decomposition> cut = {};
+    /// Bytes that a frame may take which each rank has as a whole (divideFrames()), with what is done with it and one
+    /// more that is being read; the same on all ranks.
+    std::uint64_t roomForFrame = 0;
 
     Decomposition blocksOf(const Int3& dims, int ranks) const;
+    /// Whether each rank has all of a volume.
+    bool isWhole(const Int3& dims, SampleType type, const MemoryUse& then, int ranks) const;
 };
 
 /// The block that a rank has of a volume.

@@ -27,10 +27,6 @@ constexpr double kMetricStep = 0.1; ///< of ln τ
 constexpr double kUnseen = 0.03;    ///< of the mean change, that even a feature counts which is not seen
 constexpr int kMovesAnew = 12;      ///< of the search where a frame is off target
 
-TransferFunction writtenFor(const TransferFunction& tf, const ValueRange& window) {
-    return window.lo < window.hi && tf.range ? inRange(tf, window) : tf;
-}
-
 /// One number per frame that minimises Σ (x_t − r_t)² + λ Σ (x_t − x_(t−1))²; where `lastStays` the last is r's. A
 /// tridiagonal system. No number goes to and fro more than before.
 std::vector<double> withSmallSteps(const std::vector<double>& r, double weight, bool lastStays) {
@@ -148,6 +144,10 @@ std::vector<double> opacitiesBetween(const std::vector<double>& from, const std:
 }
 
 } // namespace
+
+TransferFunction writtenFor(const TransferFunction& tf, const ValueRange& window) {
+    return window.lo < window.hi && tf.range ? inRange(tf, window) : tf;
+}
 
 Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const JobControl& job) {
     Session session = basis.session;

@@ -13,6 +13,9 @@
 
 namespace pellucid {
 
+/// `tf` of the same data values in another window; as it is where it says of no values, or the window holds one.
+TransferFunction writtenFor(const TransferFunction& tf, const ValueRange& window);
+
 /// The scene of another frame under a given transfer function; everything else is that of `basis`. Where `basis` is of
 /// that frame, no data is read. Throws as resolve() does.
 Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const JobControl& job = {});

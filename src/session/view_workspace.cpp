@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 
 #include "base/error.h"
-#include "engines/engines.h"
+#include "engines/divided_work.h"
 #include "optimize/objective.h"
 #include "render/cpu/cpu_engine.h"
 #include "volume/excerpt.h"
@@ -49,10 +49,11 @@ ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job)
     if (m_volume != input.volume || !m_engine) {
         forget();
         const int factor = coarseningForViews(input.volume->dims());
-        m_seen = factor == 1 ? input.volume : std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
+        // The copy of a volume in blocks is a whole, for each process that has one of them.
+        const bool isSeen = factor == 1 && input.volume->elsewhere() == nullptr;
+        m_seen = isSeen ? input.volume : std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
         job.throwIfStopped();
-        // In blocks it is measured by those who have them.
-        m_engine = m_seen->elsewhere() ? makeEngine(EngineChoice::Cpu, m_seen) : makeDraftEngine(m_seen);
+        m_engine = makeDraftEngine(m_seen);
         m_volume = input.volume;
     }
     if (const WeightsOf wanted(input); m_weightsOf != wanted) {
@@ -65,7 +66,7 @@ ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job)
                              coarse ? &*coarse : input.colors.get());
         m_weightsOf = wanted;
     }
-    return {*m_engine, m_weights};
+    return {*m_engine, m_weights, dividedWork()};
 }
 
 ViewSearch ViewWorkspace::search(const MeasureInput& input, const ViewMetric& metric, int count, const JobControl& job,

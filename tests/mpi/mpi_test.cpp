@@ -248,6 +248,47 @@ TEST_CASE("ranks follow a series as one process does", "[mpi]") {
     }
 }
 
+TEST_CASE("ranks divide the frames of a series that each of them can hold", "[mpi]") {
+    // Five frames of 2.8 million voxels, which lie in blocks otherwise; one is cut off. What each rank does with its
+    // own is what one process does: the same figures, bit by bit, and the same pictures.
+    const Workshop shop;
+    rawVolume(shop);
+    std::string bytes = shop.read("volume.raw");
+    for (int frame = 0; frame < 5; ++frame) {
+        shop.write("f" + std::to_string(frame) + ".raw", frame == 2 ? bytes.substr(0, 1000) : bytes);
+        for (char& c : bytes) c = static_cast<char>(static_cast<unsigned char>(c) * 15 / 16);
+    }
+    const Words words{"sequence", "f%d.raw", "--raw", "150,140,132,u8", "--tf",  "tents:3", "--range",
+                      "0,220",    "--view",  "30,20", "--size",         "64x64", "--2dfs",  "--compare"};
+    for (const Words& mode :
+         {Words{"--mode", "static"}, Words{"--mode", "optimize", "--target", "3,2,1"},
+          Words{"--mode", "optimize", "--target", "3,2,1", "--coherence", "0"}, Words{"--mode", "refine"}}) {
+        const std::string how = mode[1] + std::to_string(mode.size());
+        INFO(how);
+        const Outcome alone = shop.run(Words{PELLUCID_ONE} + words + mode + Words{"--out", "one" + how, "--json"});
+        const Outcome shared = shop.run(onRanks(3, words + mode + Words{"--out", "many" + how, "--json"}));
+        REQUIRE(alone.status == 0);
+        REQUIRE(shared.status == 0);
+        json one = json::parse(alone.out), many = json::parse(shared.out);
+        const auto saysOfBroken = [](const Outcome& o) { return o.err.find("frame 2 (f2) is passed over"); };
+        CHECK(saysOfBroken(alone) != std::string::npos);
+        CHECK(saysOfBroken(shared) == saysOfBroken(alone));
+        REQUIRE(one["frames"].size() == 4);
+        for (json* all : {&one, &many})
+            for (json& frame : (*all)["frames"]) frame.erase("seconds");
+        CHECK(many["frames"] == one["frames"]);
+        CHECK(many["broken"].size() == 1);
+        CHECK(many["broken"][0]["frame"] == 2);
+        CHECK(shop.read("many" + how + "/curves.csv").size() > 100);
+        for (const char* frame : {"0", "1", "3", "4"})
+            for (const char* file : {".png", "_static.png", ".tf.json"}) {
+                const std::string name = std::string("/frame_000") + frame + file;
+                CHECK(shop.read("many" + how + name) == shop.read("one" + how + name));
+            }
+        CHECK_FALSE(std::filesystem::exists(shop.path("many" + how + "/frame_0002.png")));
+    }
+}
+
 TEST_CASE("ranks with different programs find out", "[mpi]") {
     const Workshop shop;
     std::filesystem::copy_file(PELLUCID_MANY, shop.path("other"));

@@ -180,14 +180,21 @@ ViewSearch searchViews(const ViewLevel& level, const ViewSubject& subject, const
     ViewMap& map = result.map;
     map.metric = metric;
     const std::vector<Vec3> directions = spreadDirections(count);
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-        job.throwIfStopped();
-        result.figures.push_back(judge.look(directions[i]));
-        map.values.push_back(metric.valueOf(result.figures.back()));
-        map.directions.push_back(directions[i]);
-        job.report(static_cast<double>(i + 1) / static_cast<double>(directions.size()));
-        if (watch && (map.values.size() % kWatchEvery == 0 || map.values.size() == directions.size())) watch(map);
+    const std::size_t atOnce = kWatchEvery * level.work.parts;
+    for (std::size_t first = 0; first < directions.size(); first += atOnce) {
+        const auto figures = madeTogether(level.work, std::min(atOnce, directions.size() - first), [&](std::size_t i) {
+            job.throwIfStopped();
+            job.report(static_cast<double>(first + i) / static_cast<double>(directions.size()));
+            return judge.look(directions[first + i]);
+        });
+        for (const std::vector<double>& of : figures) {
+            map.directions.push_back(directions[map.values.size()]);
+            map.values.push_back(metric.valueOf(of));
+        }
+        result.figures.insert(result.figures.end(), figures.begin(), figures.end());
+        if (watch) watch(map);
     }
+    job.report(1);
     return result;
 }
 
@@ -301,21 +308,29 @@ std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubj
         cameras.push_back(
             lookingFrom(subject.view.camera, geometry, search.map.directions[static_cast<std::size_t>(i)]));
     std::vector<ReachableView> all;
-    for (const Camera& camera : cameras) {
-        all.push_back(reach(camera));
-        job.report(0.9 * static_cast<double>(all.size()) / static_cast<double>(cameras.size()));
-    }
+    const auto reachTogether = [&](const std::vector<Camera>& from, double done, double then) {
+        const auto found = madeTogether(level.work, from.size(), [&](std::size_t i) {
+            const ReachableView view = reach(from[i]);
+            job.report(done + (then - done) * static_cast<double>(i + 1) / static_cast<double>(from.size()));
+            std::vector<double> figures{view.objective, view.seen};
+            figures.insert(figures.end(), view.opacity.begin(), view.opacity.end());
+            return figures;
+        });
+        for (std::size_t i = 0; i < from.size(); ++i)
+            all.push_back({from[i], {found[i].begin() + 2, found[i].end()}, found[i][0], found[i][1]});
+    };
+    reachTogether(cameras, 0, 0.9);
     const auto nearest = [&] { return *std::ranges::min_element(all, {}, &ReachableView::objective); };
     // Where targets can be reached they mostly can from everywhere; only elsewhere the exact direction matters.
     double step = 0.5 * spacingOf(static_cast<std::size_t>(kReachSpread));
     for (int round = 0; round < kReachRounds && nearest().objective > kNear; ++round) {
         const ReachableView at = nearest();
+        cameras.clear();
         for (int side = 0; side < 4; ++side)
-            all.push_back(
-                reach(lookingFrom(subject.view.camera, geometry,
-                                  moved(-at.camera.forward(), step, side * kPi / 2 + (round % 2) * kPi / 4))));
+            cameras.push_back(lookingFrom(subject.view.camera, geometry,
+                                          moved(-at.camera.forward(), step, side * kPi / 2 + (round % 2) * kPi / 4)));
+        reachTogether(cameras, 0.9 + 0.1 * round / kReachRounds, 0.9 + 0.1 * (round + 1) / kReachRounds);
         if (nearest().camera == at.camera) step /= 2;
-        job.report(0.9 + 0.1 * (round + 1) / kReachRounds);
     }
     const double least = std::max(kNear, nearest().objective);
     std::ranges::stable_sort(all, [&](const ReachableView& a, const ReachableView& b) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/enum_names.h"
+#include "base/shared_work.h"
 #include "optimize/optimizer.h"
 #include "render/view.h"
 #include "render/view_direction.h"
@@ -50,6 +51,7 @@ struct ViewSubject {
 struct ViewLevel {
     VisibilityEngine& engine;
     const WeightFields& weights;
+    SharedWork work = {}; ///< of processes that all have such a level, and divide the views that are known beforehand
 };
 
 /// Values over the sphere of views.
@@ -73,8 +75,8 @@ struct ViewSearch {
 };
 
 /// Looks from all over the sphere. `watch` gets the map as it grows, on the calling thread. The same bits for any
-/// number of threads. Throws Cancelled; UsageError for a count out of range, and for a feature or targets that
-/// `subject` has not.
+/// number of threads and processes. Throws Cancelled; UsageError for a count out of range, and for a feature or targets
+/// that `subject` has not.
 ViewSearch searchViews(const ViewLevel& level, const ViewSubject& subject, const ViewMetric& metric,
                        int count = kSphereViews, const JobControl& job = {},
                        const std::function<void(const ViewMap&)>& watch = {});
