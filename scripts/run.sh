@@ -11,6 +11,10 @@ if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
     exec "$bin/pellucid" "$@"
 fi
 
+if [ $# -gt 1 ] || [[ ${1:-} == -* ]]; then
+    echo "run.sh: without a display it takes one volume; pellucid-cli has the options" >&2
+    exit 2
+fi
 scripts/build.sh pellucid-cli
 cli=$PWD/build/release/bin/pellucid-cli
 volume=${1:-sample:shells}

@@ -114,7 +114,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addDensity(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
-        "density", "Pictures from faint to strong in which each feature keeps its share of saliency");
+        "density", "Opacities from faint to strong with which each feature keeps its share of saliency");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
     o->limits.add(*app);

@@ -97,9 +97,9 @@ std::string sizeText(const Pictured& p) {
 }
 
 std::string sharesText(const PictureShares& shares, bool overlaid) {
-    return "opacity of the picture " + fixedText(shares.alpha, 4) +
-           (overlaid ? ", share of the overlay " + fixedText(shares.overlay, 4) : "") + ", of no feature " +
-           fixedText(shares.rest, 4) + "\n";
+    return "opacity of the picture " + fixedText(shares.alpha, 4) + ", the sum of the features' parts" +
+           (overlaid ? ", " + fixedText(shares.overlay, 4) + " of the overlay" : "") + " and " +
+           fixedText(shares.rest, 4) + " of no feature\n";
 }
 
 std::string textOf(const Scene& scene, const Found& found, const std::string& profile) {
@@ -109,7 +109,7 @@ std::string textOf(const Scene& scene, const Found& found, const std::string& pr
     std::vector<std::string> head{"feature", "intensities", "opacity",    "visibility",
                                   "VWS",     "brightness",  "saturation", "cover"};
     if (pictured) head.emplace_back("2DFS");
-    if (shares) head.emplace_back("share");
+    if (shares) head.emplace_back("part");
     Table table(head);
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];

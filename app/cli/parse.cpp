@@ -157,10 +157,11 @@ namespace {
 
 ClipAxis parseClipAxis(const std::string& text, const std::string& option) {
     const auto parts = split(text, ':');
-    if (parts.size() != 3) throw UsageError(quoted(text) + " is not a clipped axis", option, "give x:A:B");
+    if (parts.size() != 3)
+        throw UsageError(quoted(text) + " is not a part of an axis", option, "give x:A:B with 0 <= A < B <= 1");
     const ClipAxis clip{parts[0][0] - 'x', parseRealFrom(parts[1], option, 0, 1),
                         parseRealFrom(parts[2], option, 0, 1)};
-    if (!(clip.lo < clip.hi)) throw UsageError("nothing is left between the ends of " + text, option, "give A < B");
+    if (!(clip.lo < clip.hi)) throw UsageError(quoted(text) + " is empty", option, "give x:A:B with 0 <= A < B <= 1");
     return clip;
 }
 

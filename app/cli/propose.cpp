@@ -88,7 +88,7 @@ std::vector<std::string> clipsWithout(const Holder& holder) {
 std::string textOf(const Holder& holder) {
     return std::string("the object lies on a board or holder, which runs along ") + "xyz"[holder.along] + " at " +
            (holder.isHigh ? "high " : "low ") + "xyz"[holder.axis] +
-           ": it is faint, and in no figure; --holder 0 leaves it out, --holder 1 draws it like the rest";
+           ": it is drawn faintly and not measured; --holder 0 leaves it out, --holder 1 draws it like the rest";
 }
 
 Answer run(const Options& o, Progress& progress) {

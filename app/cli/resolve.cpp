@@ -106,8 +106,9 @@ Opened resolve(const SceneOptions& options, Progress& progress, const Work& work
     options.clip.check(opened.scene);
     if (inputs.session.clipping->rest.isNone() && opened.scene.session.clipping->rest.density > 0 &&
         !options.clip.holder)
-        opened.sessionNotices.emplace_back("the object lies on a board or holder, which is drawn faintly and is in no "
-                                           "figure: --holder 1 draws it like the rest, --holder 0 leaves it out");
+        opened.sessionNotices.emplace_back(
+            "the object lies on a board or holder, which is drawn faintly and not measured: "
+            "--holder 1 draws it like the rest, --holder 0 leaves it out");
     options.tf.applyTo(opened.scene);
     options.picture.applyTo(opened.scene);
     return opened;

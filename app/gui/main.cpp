@@ -94,7 +94,10 @@ struct Options {
 /// Throws UsageError.
 Options optionsOf(QCommandLineParser& parser) {
     if (!parser.parse(QApplication::arguments()))
-        throw UsageError("wrong option", parser.errorText().chopped(1).toStdString(), "see pellucid --help");
+        throw parser.unknownOptionNames().isEmpty()
+            ? UsageError("wrong option", parser.errorText().chopped(1).toStdString(), "see pellucid --help")
+            : UsageError("unknown option", "--" + parser.unknownOptionNames().front().toStdString(),
+                         "see pellucid --help");
     const auto wrong = [&](const char* kind, const QString& option, const char* whatToDo) {
         return UsageError(std::string(kind) + " \"" + parser.value(option).toStdString() + "\"",
                           "--" + option.toStdString(), whatToDo);

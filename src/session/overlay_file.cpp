@@ -67,8 +67,7 @@ SceneOverlay readOverlay(const OverlayView& view, const Geometry& first, const J
     overlay.notices = volume->notices;
     overlay.byCentres = place.byCentres;
     if (place.byCentres)
-        overlay.notices.emplace_back("nothing tells where " + volume->title +
-                                     " lies in the world of the volume: the centres of their boxes are one");
+        overlay.notices.emplace_back(volume->title + " does not say where it lies: it is centred on the volume");
     overlay.geometry = place.geometry;
     overlay.volume = std::move(volume);
     dressOverlay(overlay, view);

@@ -38,8 +38,7 @@ const VolumeFormat& formatOf(const std::string& path) {
     const bool named = lowerCase(path).ends_with(".raw");
     const auto suffixes = [](const VolumeFormat& format) { return joined(format.suffixes, " "); };
     throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format", path,
-                    named ? "describe how its bytes are laid out" : "give one of " + joined(formats(), " ", suffixes),
-                    Remedy::GiveRawLayout);
+                    named ? "" : "give one of " + joined(formats(), " ", suffixes), Remedy::GiveRawLayout);
 }
 
 void requireNotEmpty(const std::string& path) {

@@ -176,7 +176,8 @@ FileList listFiles(const VolumeSource& source) {
     if (list.paths.empty()) {
         for (const std::string& file : all)
             if (const auto unread = unreadFormat(file)) throw *unread;
-        throw FileError(std::string("there is no file ") + (all.empty() ? "" : "of a known volume format ") +
+        throw FileError(std::string("there is no file ") +
+                            (all.empty() && !isFolder ? "" : "of a known volume format ") +
                             (isFolder ? "in this folder" : "with a name of this pattern"),
                         path, isFolder ? "name another folder, or a file" : "check folder and name",
                         all.empty() ? Remedy::AsSaid : Remedy::GiveRawLayout);

@@ -114,7 +114,7 @@ TEST_CASE("measure tells what part of the picture the overlay has, and each feat
     CHECK(both["picture_shares"]["overlay"] > 0.01);
     CHECK(sum == Approx(both["picture_shares"]["alpha"].get<double>()).margin(1e-6));
     const Outcome text = w.run(measure + kOverlay);
-    CHECK(text.out.find("share of the overlay 0.") != std::string::npos);
+    CHECK(text.out.find(" of the overlay and 0.") != std::string::npos);
     const Outcome none = w.run({"measure", "sample:shells", "--sample-size", "16", "--overlay", "sample:disks"});
     CHECK(none.status == 2);
     CHECK(none.err.find("no picture is looked at, --overlay") != std::string::npos);

@@ -121,13 +121,32 @@ TEST_CASE("a board on which an object lies is faint behind it, and a click leave
     CHECK(cut.rest.density == 0);
     CHECK(cut.rest.within == faint.rest.within);
     REQUIRE(noticeText(w).contains("left out"));
+    CHECK(density.value() == 0);
     QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
     w.settle();
     CHECK(w.services().store().session().clipping->rest.isNone());
+    CHECK(noticeText(w).contains("like the rest"));
+    CHECK_FALSE(noticeText(w).contains("left out"));
+    CHECK(density.isVisibleTo(density.parentWidget())); // there is a way back
+    CHECK(density.value() == 100);
     w.child<QAction>("undoAction").trigger();
     CHECK(*w.services().store().session().clipping == cut);
+    CHECK(noticeText(w).contains("left out")); // what the note says is so
     w.child<QAction>("undoAction").trigger();
     CHECK(*w.services().store().session().clipping == faint);
+    CHECK(noticeText(w).contains("drawn faintly"));
+    CHECK_FALSE(noticeText(w).contains("left out"));
+
+    // All of it, by number; and faint once more by the note, as it was.
+    density.setValue(100);
+    CHECK(w.services().store().session().clipping->rest.isNone());
+    CHECK(noticeText(w).contains("like the rest"));
+    QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
+    w.settle();
+    CHECK(*w.services().store().session().clipping == faint);
+    density.setValue(0);
+    CHECK(w.services().store().session().clipping->rest.within == faint.rest.within);
+    CHECK(noticeText(w).contains("left out"));
 
     // By number; clipping comes and goes beside it.
     density.setValue(20);

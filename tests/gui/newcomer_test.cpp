@@ -183,7 +183,7 @@ TEST_CASE("a newcomer comes from an own CT to a film in fourteen actions", "[gui
     CHECK(w.services().scene().session.display->light.on);
 
     // Less of the head rest: it is found, and can be left out.
-    hand.press("Leave it out");
+    hand.press("Leave out board");
     w.settle();
     CHECK_FALSE(w.services().scene().session.clipping->rest.isNone());
     CHECK(w.services().scene().session.clipping->rest.density == 0);

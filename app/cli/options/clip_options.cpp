@@ -17,9 +17,9 @@ void ClipOptions::add(CLI::App& app) {
         "View");
     addValue(
         app, kHolder, "D", holder, realFrom(0, 1),
-        "draw the board or holder that the object lies on this dense, as part of its own density: 0 leaves it out, 1 "
-        "draws and counts it like the rest. An automatic start finds it, and draws it faintly; below 1 it is in no "
-        "figure, and hides what lies behind it as much as is seen of it",
+        "how strongly the board or holder under the object is drawn: 0 leaves it out, 1 draws and measures it like the "
+        "rest. An automatic start finds it and draws it faintly; below 1 it is not measured, but still dims what lies "
+        "behind it",
         "View");
 }
 

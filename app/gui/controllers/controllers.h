@@ -6,6 +6,7 @@
 #include "controllers/feature_actions.h"
 #include "controllers/field_controller.h"
 #include "controllers/film_controller.h"
+#include "controllers/holder_controller.h"
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
@@ -43,6 +44,7 @@ struct Controllers {
     OrientationController orientation{services, opening};
     OverlayController overlays{services, opening};
     StartController starting{services, opening};
+    HolderController holder{services, opening};
     RecoveryController recovery{services, opening, saving};
     PlayerController player{services, opening}; ///< frames of a series
     AdaptController adapting{services, player}; ///< transfer functions over time

@@ -20,19 +20,19 @@ constexpr double kLeastStart = 1e-4; ///< opacity of a restart
 
 QString sayOf(const OptimizeResult& result, int restarts) {
     const OptimizeState& best = result.history[result.best];
-    QString figures =
-        (result.iterations() == 1 ? QObject::tr("%1, from %2, in %3 move") : QObject::tr("%1, from %2, in %3 moves"))
-            .arg(terms().offTarget(best.objective), terms().distanceText(result.history.front().objective))
-            .arg(result.iterations());
-    if (restarts > 0) figures += QObject::tr("; restarted from the new view");
+    QString way = (result.iterations() == 1 ? QObject::tr("from %1, in %2 move") : QObject::tr("from %1, in %2 moves"))
+                      .arg(terms().distanceText(result.history.front().objective))
+                      .arg(result.iterations());
+    if (restarts > 0) way += QObject::tr("; restarted from the new view");
+    const QString figures = QObject::tr("%1, %2").arg(terms().offTarget(best.objective), way);
     const std::string kept = keptText(result), faint = faintText(result);
     if (!kept.empty()) return QString::fromStdString(faint.empty() ? kept : kept + " " + faint) + " (" + figures + ")";
     if (!faint.empty()) // not without what makes it visible
         return QObject::tr("%1: %2 (%3)")
             .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
                  QString::fromStdString(faint), figures);
-    return (result.reason == StopReason::Converged ? QObject::tr("On target: %1.")
-            : result.reason == StopReason::NoProgress
+    if (result.reason == StopReason::Converged) return QObject::tr("On target, %1.").arg(way);
+    return (result.reason == StopReason::NoProgress
                 ? QObject::tr("Not on target: no move came nearer; %1. Looking for the reason…")
                 : QObject::tr("Stopped at the limit of moves: %1."))
         .arg(figures);

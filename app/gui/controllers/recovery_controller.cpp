@@ -72,8 +72,8 @@ void RecoveryController::offer() {
     for (const Recovered& left : recoverableSessions(folder().toStdString())) {
         m_services.notices().add({tr("Pellucid closed before your work on %1 was saved. It was last kept at %2.")
                                       .arg(QString::fromStdString(left.title), QString::fromStdString(left.when)),
-                                  {{tr("Restore it"), [this, path = left.path] { restore(path); }},
-                                   {tr("Discard it"), [path = left.path] { discardRecovered(path); }}}});
+                                  {{tr("Restore work"), [this, path = left.path] { restore(path); }},
+                                   {tr("Discard work"), [path = left.path] { discardRecovered(path); }}}});
     }
 }
 

@@ -22,28 +22,6 @@ QString percentText(double share) {
     return QString::number(100 * share, 'g', 2) + QStringLiteral(" %");
 }
 
-/// What the object lies on is faint at first. It can be left out, or drawn like the rest.
-void offerForHolder(Services& services) {
-    if (services.scene().session.clipping->rest.isNone()) return;
-    const auto edit = [&services](const QString& text, void (*change)(FaintRest&)) {
-        if (!services.isEditable() || services.scene().session.clipping->rest.isNone()) return false;
-        services.store().edit(text, {}, [change](Session& session) {
-            session.clipping.edit([change](Clipping& clipping) { change(clipping.rest); });
-        });
-        fitView(services.store());
-        return true;
-    };
-    const auto drawLikeRest = [edit] { edit(QObject::tr("Show the holder"), [](FaintRest& rest) { rest = {}; }); };
-    const auto leaveOut = [&services, edit, drawLikeRest] {
-        if (!edit(QObject::tr("Leave out the holder"), [](FaintRest& rest) { rest.density = 0; })) return;
-        services.notices().add({QObject::tr("The board or holder is left out: it is neither drawn nor measured."),
-                                {{QObject::tr("Show it"), drawLikeRest}}});
-    };
-    services.notices().add(
-        {QObject::tr("The object lies on a board or holder. It is drawn faintly, and no figure counts it."),
-         {{QObject::tr("Leave it out"), leaveOut}, {QObject::tr("Show it fully"), drawLikeRest}}});
-}
-
 } // namespace
 
 QString recognisedText(const Proposal& proposal) {
@@ -62,11 +40,11 @@ QString beyondText(const Proposal& proposal, const ValueRange& data) {
     const bool below = data.lo < window.lo;
     const bool above = data.hi > window.hi;
     if (!(data.lo < data.hi) || (!below && !above)) return {};
-    const auto plain = [](double v) { return QString::number(v, 'g', 4); };
+    const auto plain = [](double v) { return QString::number(v, 'g', 4).replace('-', QChar(0x2212)); };
     const QString ends = below && above ? QObject::tr("%1 and %2").arg(plain(data.lo), plain(data.hi))
                                         : plain(below ? data.lo : data.hi);
-    return QObject::tr("Range clipped to %1 (%2 of the voxels lie outside, up to %3).")
-        .arg(rangeText(window), percentText(proposal.outside), ends);
+    return QObject::tr("Range clipped to %1…%2 (%3 of voxels outside, up to %4).")
+        .arg(plain(window.lo), plain(window.hi), percentText(proposal.outside), ends);
 }
 
 StartController::StartController(Services& services, OpenController& opening)
@@ -115,7 +93,6 @@ void StartController::follow() {
     m_again.cancel();
     if (!scene.proposal) return;
     say(*scene.proposal);
-    offerForHolder(m_services);
     m_tuning.start(scene, QString::fromStdString(scene.volume->title));
 }
 

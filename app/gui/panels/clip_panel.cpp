@@ -12,6 +12,7 @@
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
 #include "render/clip_handles.h"
+#include "store/known_holder.h"
 #include "volume/orientation.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
@@ -61,12 +62,12 @@ private:
     std::array<QLabel*, 3> m_axis{};
     std::array<std::array<QDoubleSpinBox*, 2>, 3> m_box{}; ///< [axis][lower, upper], per cent of the box
     std::array<PlaneRow, kMostClipPlanes> m_planes{};
+    KnownHolder m_known;
     QLabel* m_holderLabel = named(new QLabel(tr("Board or holder"), this), "holderLabel");
     QDoubleSpinBox* m_holder = named(
         new QDoubleSpinBox(this), "holderDensity",
-        tr("How dense what the object lies on is drawn, per cent of its own density: 0 leaves it out, at 100 it is "
-           "drawn and counted like the rest. Below 100 no figure counts it, but it hides what lies behind it as much "
-           "as is seen of it"));
+        tr("How strongly the board or holder under the object is drawn: 0 % leaves it out, 100 % draws and measures "
+           "it like the rest. Below 100 % it is not measured, but still dims what lies behind it"));
     QPushButton* m_add =
         named(new QPushButton(tr("&Add plane"), this), "addPlaneButton",
               tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
@@ -91,12 +92,10 @@ ClipPanel::ClipPanel(Services& services, QAction& handles, QWidget* parent) : QW
     fillScrolled(this, rows);
 
     connect(m_holder, &QDoubleSpinBox::valueChanged, this, [this](double percent) {
+        const FaintRest known = m_known.of(m_services.scene());
         editPart(m_services.store(), &Session::clipping, tr("Board or holder"), QStringLiteral("clip-holder"),
                  [&](Clipping& c) {
-                     if (percent < 100)
-                         c.rest.density = percent / 100;
-                     else
-                         c.rest = {};
+                     c.rest = percent < 100 ? FaintRest{known.within, percent / 100} : FaintRest{};
                  });
     });
     connect(m_add, &QPushButton::clicked, this, [this, &handles] { addPlane(m_services, handles); });
@@ -227,10 +226,10 @@ void ClipPanel::follow() {
         showNumber(*m_box[axis][1], 100 * clipping.hi[a]);
         nameAxis(axis, geometry);
     }
-    const bool liesOnSomething = !clipping.rest.isNone();
+    const bool liesOnSomething = !m_known.of(scene).isNone();
     m_holderLabel->setVisible(liesOnSomething);
     m_holder->setVisible(liesOnSomething);
-    showNumber(*m_holder, 100 * clipping.rest.density);
+    showNumber(*m_holder, clipping.rest.isNone() ? 100 : 100 * clipping.rest.density);
     const double size = 2 * geometry.radius();
     const QString unit = geometry.worldAxes == WorldAxes::Patient ? tr(" mm") : QString();
     for (std::size_t i = 0; i < clipping.planes.size(); ++i) {

@@ -400,7 +400,7 @@ void TargetBars::paintEvent(QPaintEvent*) {
     const double head = kHead - 4, room = width() - trackLeft() - kNumbers;
     painter.drawText(
         QRectF(trackLeft(), 2, room, head), Qt::AlignLeft | Qt::AlignVCenter,
-        metrics.elidedText(terms().areScientific() ? tr("VWS, thin bar: visibility") : tr("attention, thin bar: seen"),
+        metrics.elidedText(terms().areScientific() ? tr("VWS · thin: visibility") : tr("attention · thin: seen"),
                            Qt::ElideRight, room));
     const double left = width() - 2 - kLock - kTarget;
     painter.drawText(QRectF(left - kNow, 2, kNow, head), Qt::AlignRight | Qt::AlignVCenter, tr("now"));

@@ -21,11 +21,12 @@ WelcomeCard::WelcomeCard(QWidget* parent) : QFrame(parent) {
     QLabel* title = wrappedLabel("welcomeTitle", this);
     title->setText(tr("<b>This is a sample.</b> Three things to try:"));
     QLabel* things = wrappedLabel("welcomeThings", this);
-    things->setText(tr("<ul style='margin-left: 14px; -qt-list-indent: 0;'>"
-                       "<li>Drop a file of your own onto the window, or press Ctrl+O.</li>"
-                       "<li>Click on a thing in the picture: what is it, and how much of it is seen?</li>"
-                       "<li>Drag a target in the table of features, then press Optimize: the picture shows that much "
-                       "of it.</li></ul>"));
+    things->setText(
+        tr("<ul style='margin-left: 14px; -qt-list-indent: 0;'>"
+           "<li>Drop a file of your own onto the window, or press Ctrl+O.</li>"
+           "<li>Click on a thing in the picture: what is it, and how much of it is seen?</li>"
+           "<li>Drag the white handle on a feature's bar, then press Optimize: the feature gets that share of "
+           "attention.</li></ul>"));
     auto* close = named(new QPushButton(tr("Got it"), this), "welcomeClose", tr("This card will not be shown again"));
     connect(close, &QPushButton::clicked, this, &WelcomeCard::dismiss);
     setLayout(inset(columnOf({title, things, rowOf({Cell::rest(), close}), Cell::rest()}), {14, 12, 14, 12}));

@@ -47,6 +47,9 @@ void writeTfFile(const TransferFunction& tf, const ValueRange& window, const std
 TransferFunction loadTf(const std::string& specOrPath) {
     if (auto tf = tfFromSpec(specOrPath)) return *tf;
     if (auto tf = tfFromPresetSpec(specOrPath)) return *tf;
+    std::error_code failure;
+    if (!std::filesystem::exists(specOrPath, failure))
+        throw FileError("no such file", specOrPath, "check the name, or give auto, tents:N, ramp:N or preset:NAME");
     return readTfFile(specOrPath);
 }
 
