@@ -7,6 +7,8 @@
 #include <map>
 #include <thread>
 
+#include <unistd.h>
+
 #include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "commands.h"
@@ -176,10 +178,13 @@ private:
     void prepareKey();
     void plan(ReadAhead& ahead);
     std::vector<Json> gatherAll(const Json& mine) const;
+    void read(int frame) const;
     void readTogether(int frame) const;
+    void requireSharedFolder() const;
     bool isMine(const Frame& frame) const { return m_work.isMine(static_cast<std::size_t>(frame.number - m_start)); }
     void open(Frame& frame) const;
     void follow(Frame& frame);
+    void followRead(Frame& frame);
     Frame next(int number);
     void agree(std::vector<Frame>& batch) const;
     void draw(Frame& frame, Workspace& workspace) const;
@@ -280,8 +285,10 @@ SharedWork Sequence::divided() const {
     const Session& session = m_scene.session;
     const bool needsOthers = session.variables->size() > 1 || session.variable().derivation || session.hsb->on ||
                              (settings().mode == Mode::Refine && session.refine->region);
-    if (m_scene.volume->elsewhere() != nullptr || (needsOthers && !knowsTfs())) return {};
-    return workOfProcess();
+    const SharedWork work = workOfProcess();
+    const auto frames = static_cast<std::size_t>(m_scene.series->size() - m_start);
+    if (m_scene.volume->elsewhere() != nullptr || (needsOthers && !knowsTfs()) || frames < work.parts) return {};
+    return work;
 }
 
 /// The elements of the lists of all processes.
@@ -295,27 +302,60 @@ std::vector<Json> Sequence::gatherAll(const Json& mine) const {
     return all;
 }
 
+/// The frame's own data, of which a rank has no block.
+void Sequence::read(int frame) const {
+    if (m_scene.series->load(frame, {interruptToken(), {}})->elsewhere() != nullptr)
+        throw Error(
+            "the frames of the series take different amounts of memory, so that some fit a rank and some do not",
+            m_scene.series->listing().fileOf(frame), "use fewer ranks on each machine, or pellucid-cli");
+}
+
 /// Reads the frame where ranks go on together: all, or none.
 void Sequence::readTogether(int frame) const {
     if (m_work.parts == 1) return;
+    TimeSeries& series = *m_scene.series;
     std::string problem;
-    {
+    try {
         const WorkAlone alone;
-        try {
-            m_scene.series->load(frame, {interruptToken(), {}});
-        } catch (const FileError& error) {
-            problem = error.problem();
-        }
+        read(frame);
+    } catch (const FileError& error) {
+        passOver(series, frame, error);
+        problem = series.summary(frame).problem;
     }
+    for (const auto& other : m_work.gather(std::as_bytes(std::span(problem)))) {
+        if (other.empty()) continue;
+        series.noteProblem(frame, {reinterpret_cast<const char*>(other.data()), other.size()});
+        throw FileError("some rank cannot read it", series.listing().fileOf(frame), "check the file");
+    }
+}
+
+/// Whether all processes see the folder: those that write into another one of the same name would lose their frames.
+void Sequence::requireSharedFolder() const {
+    if (m_work.parts == 1) return;
+    std::string name = ".pellucid-" + std::to_string(getpid()) + ".part";
+    const auto all = m_work.gather(std::as_bytes(std::span(name)));
+    name.assign(reinterpret_cast<const char*>(all.front().data()), all.front().size());
+    const std::string path = inFolder(m_o, name);
+    std::string problem;
+    try {
+        if (m_work.part == 0) writeTextAtomically(path, name);
+    } catch (const FileError& error) {
+        problem = error.problem();
+    }
+    m_work.gather({});
+    std::error_code failure;
+    if (problem.empty() && !fs::exists(path, failure)) problem = "not all processes see this folder";
+    std::string said;
     for (const auto& other : m_work.gather(std::as_bytes(std::span(problem))))
-        if (!other.empty())
-            throw FileError({reinterpret_cast<const char*>(other.data()), other.size()},
-                            m_scene.series->listing().fileOf(frame), "check the file");
+        if (said.empty()) said.assign(reinterpret_cast<const char*>(other.data()), other.size());
+    if (m_work.part == 0) fs::remove(path, failure);
+    if (!said.empty()) throw FileError(said, m_o.out, "name a folder that all machines share, and can write to");
 }
 
 /// Reads the frame, ready to be drawn and measured.
 void Sequence::open(Frame& frame) const {
     const JobControl job{interruptToken(), {}};
+    if (m_work.parts > 1) read(frame.number);
     frame.scene = sceneAt(m_scene, frame.number, frame.tf, job);
     if (m_o.compare) frame.asStatic = sceneAt(frame.scene, frame.number, m_fixed, job);
 }
@@ -327,6 +367,17 @@ void Sequence::follow(Frame& frame) {
     // Broken or not, what follows a key begins there.
     if (track.keys.contains(number) || !m_chain) m_chain = *track.keys.at(track.keyBefore(number));
     readTogether(number);
+    try {
+        followRead(frame);
+    } catch (const FileError& e) { // of one rank, perhaps: others are amid a sweep
+        if (m_work.parts == 1) throw;
+        throw Error(e.problem(), e.where(), e.whatToDo(), e.remedy());
+    }
+}
+
+void Sequence::followRead(Frame& frame) {
+    const TfTrack& track = m_scene.session.variable().track;
+    const int number = frame.number;
     AdaptTask task{number, track.keyBefore(number), *m_chain, {}};
     task.basis = frameFingerprint(m_scene.session, *m_scene.series, number, *m_chain);
     const auto known = track.adapted.find(number); // a session brings some
@@ -367,12 +418,13 @@ void Sequence::agree(std::vector<Frame>& batch) const {
     if (m_work.parts == 1) return;
     Json mine = Json::array();
     for (const Frame& frame : batch)
-        if (isMine(frame) && !frame.problem.empty()) mine.push_back({frame.number, frame.problem});
-    for (const Json& broken : gatherAll(mine))
+        if (isMine(frame)) mine.push_back({frame.number, frame.problem});
+    for (const Json& found : gatherAll(mine))
         for (Frame& frame : batch) {
-            if (frame.number != broken[0].get<int>() || !frame.problem.empty()) continue;
-            frame.problem = broken[1].get<std::string>();
-            m_scene.series->noteProblem(frame.number, frame.problem);
+            if (frame.number != found[0].get<int>()) continue;
+            frame.problem = found[1].get<std::string>();
+            if (m_scene.series->summary(frame.number).problem != frame.problem) // files come and go
+                m_scene.series->noteProblem(frame.number, frame.problem);
         }
 }
 
@@ -477,6 +529,7 @@ void Sequence::finish(std::vector<Frame>& batch) {
         const bool goesOn = mine.size() == 1 && m_work.parts == 1;
         parallelFor(mine.size(),
                     [&](std::size_t i) { draw(*mine[i], goesOn ? m_maker.workspace() : m_sideBySide[i]); });
+        if (m_work.parts > 1) m_sideBySide.front() = {}; // its memory is wanted for the frames to come
     }
     gather(batch);
     for (Frame& frame : batch) {
@@ -613,6 +666,7 @@ Answer Sequence::run(const Opened& opened) {
     fs::create_directories(m_o.out, failure);
     if (failure && !fs::is_directory(m_o.out))
         throw FileError("the folder cannot be created: " + failure.message(), m_o.out, "give another one to --out");
+    requireSharedFolder();
     const TimeSeries& series = *m_scene.series;
     ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {interruptToken(), {}}));
     if (smooths(settings())) plan(ahead); // all frames are looked at before one is drawn

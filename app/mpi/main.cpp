@@ -1,6 +1,6 @@
 // pellucid-mpi: commands of pellucid-cli on volumes that no process holds as a whole. All ranks do the same; what they
 // have of a volume differs. Rank 0 alone says anything and writes files, but for those that all write together
-// (base/joint_file.h).
+// (base/joint_file.h), and those of the frames that they divide.
 #include <algorithm>
 #include <limits>
 

@@ -89,7 +89,7 @@ Decomposition RankLayout::blocksOf(const Int3& dims, int ranks) const {
 
 bool RankLayout::isWhole(const Int3& dims, SampleType type, const MemoryUse& then, int ranks) const {
     if (ranks == 1 || voxelCount(dims) < smallest) return true;
-    return dividesFrames() && bytesOf(then, dims, type) + 2 * voxelCount(dims) * bytesPerSample(type) <= roomForFrame;
+    return dividesFrames() && bytesOf(then, dims, type) + 4 * voxelCount(dims) * bytesPerSample(type) <= roomForFrame;
 }
 
 Volume volumeOfBlocks(Communicator& ranks, BlockVolume block, const Volume& like, RankLayout* layout) {

@@ -17,8 +17,8 @@ struct RankLayout {
     std::size_t smallest = 128 * 128 * 128;
     /// Of volumes with these extents, see cutByWork(); others, and all while it is empty, in equal blocks.
     std::optional<Decomposition> cut = {};
-    /// Bytes that a frame may take which each rank has as a whole (divideFrames()), with what is done with it and one
-    /// more that is being read; the same on all ranks.
+    /// Bytes that a frame may take which each rank has as a whole (divideFrames()), with what is done with it and three
+    /// more that are there meanwhile; the same on all ranks.
     std::uint64_t roomForFrame = 0;
 
     Decomposition blocksOf(const Int3& dims, int ranks) const;

@@ -30,8 +30,12 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
             m_weights = {};
         }
         if (m_raysOf.volume != input.volume) releaseRays();
-        requireMemory(ofPartHere(useUnder(settings), *input.volume), input.volume->title, input.volume->dimsHere(),
-                      input.volume->sampleType());
+        try {
+            requireMemory(ofPartHere(useUnder(settings), *input.volume), input.volume->title, input.volume->dimsHere(),
+                          input.volume->sampleType());
+        } catch (const FileError& e) { // the file is sound: a frame of a series is not to be passed over
+            throw Error(e.problem(), e.where(), e.whatToDo(), e.remedy());
+        }
         m_engine = settings.profile == Profile::Published ? makePublishedEngine(input.volume)
                                                           : makeEngine(settings.engine, input.volume, settings.quality);
         m_engineOf = wanted;

@@ -289,6 +289,32 @@ TEST_CASE("ranks divide the frames of a series that each of them can hold", "[mp
     }
 }
 
+TEST_CASE("frames that would lie in folders of several machines are not begun", "[mpi]") {
+    // Two ranks in different folders, for whom `out` is not the same.
+    const Workshop shop;
+    for (const char* name : {"f0.raw", "f1.raw"}) shop.write(name, std::string(12 * 12 * 12, 'x'));
+    shop.write("f1.raw", std::string(12 * 12 * 6, 'x') + std::string(12 * 12 * 6, 'y'));
+    std::filesystem::create_directory(shop.path("elsewhere"));
+    const Words words{PELLUCID_MANY,
+                      "sequence",
+                      shop.path("f%d.raw").string(),
+                      "--raw",
+                      "12,12,12,u8",
+                      "--tf",
+                      "tents:2",
+                      "--size",
+                      "16x16",
+                      "--out",
+                      "out",
+                      "--threads",
+                      "1"};
+    const Outcome outcome = shop.run(kMpirun + Words{"-n", "1"} + words +
+                                     Words{":", "-n", "1", "sh", "-c", "cd elsewhere && exec \"$@\"", "sh"} + words);
+    CHECK(outcome.status == 1);
+    CHECK(outcome.err.find("not all processes see this folder") != std::string::npos);
+    CHECK(std::filesystem::is_empty(shop.path("out")));
+}
+
 TEST_CASE("ranks with different programs find out", "[mpi]") {
     const Workshop shop;
     std::filesystem::copy_file(PELLUCID_MANY, shop.path("other"));

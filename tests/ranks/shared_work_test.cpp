@@ -179,7 +179,7 @@ TEST_CASE("frames are on each rank as a whole where there is room and they are d
     RankLayout layout;
     const Int3 large(200), small(100);
     const MemoryUse use = toMeasureAndDrawField();
-    const std::uint64_t needed = bytesOf(use, large, SampleType::U16) + 2 * 2 * voxelCount(large);
+    const std::uint64_t needed = bytesOf(use, large, SampleType::U16) + 4 * 2 * voxelCount(large);
     layout.roomForFrame = needed;
     CHECK(layout.isWhole(small, SampleType::U16, use, 4)); // too small for blocks
     CHECK(layout.isWhole(large, SampleType::U16, use, 1)); // no other rank
