@@ -142,7 +142,7 @@ TEST_CASE("a file without a place lies in the middle of the volume, and that is 
     const Scene scene = resolve(sessionWith(files.anatomy(), nowhere), {});
     CHECK(scene.overlay->byCentres);
     REQUIRE(scene.overlay->notices.size() == 1);
-    CHECK(scene.overlay->notices[0].find("centres") != std::string::npos);
+    CHECK(scene.overlay->notices[0].find("centred") != std::string::npos);
     CHECK(scene.overlay->valueAt(Vec3(0)).value() == Approx(3)); // 0, 2, 4, 6 along x
 }
 
