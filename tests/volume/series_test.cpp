@@ -119,7 +119,8 @@ TEST_CASE("a pattern, a glob and a folder list their files as people count", "[s
     }
     CHECK_THROWS_WITH(listSeries(sourceOf(folder.path("note*"))), Contains("no file of a known volume format"));
     std::filesystem::create_directory(folder.path("empty"));
-    CHECK_THROWS_WITH(listSeries(sourceOf(folder.path("empty"))), Contains("no file of a known volume format in this folder"));
+    CHECK_THROWS_WITH(listSeries(sourceOf(folder.path("empty"))),
+                      Contains("no file of a known volume format in this folder"));
 }
 
 TEST_CASE("wildcards and numbers may stand in folders", "[series]") {
