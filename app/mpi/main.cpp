@@ -81,6 +81,11 @@ Outcome runTogether(const Program& program, const std::vector<std::string>& argu
 
 } // namespace pellucid::cli
 
+#if defined(__SANITIZE_ADDRESS__)
+/// Open MPI's modules stay: what they keep to the end of the process has their names (scripts/lsan-mpi.supp).
+extern "C" int dlclose(void*) { return 0; }
+#endif
+
 int main(int argc, char** argv) {
     namespace cli = pellucid::cli;
     cli::beginProgram();
