@@ -267,6 +267,7 @@ TEST_CASE("ranks divide the frames of a series that each of them can hold", "[mp
         INFO(how);
         const Outcome alone = shop.run(Words{PELLUCID_ONE} + words + mode + Words{"--out", "one" + how, "--json"});
         const Outcome shared = shop.run(onRanks(3, words + mode + Words{"--out", "many" + how, "--json"}));
+        INFO(alone.err << shared.err);
         REQUIRE(alone.status == 0);
         REQUIRE(shared.status == 0);
         json one = json::parse(alone.out), many = json::parse(shared.out);
