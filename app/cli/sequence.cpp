@@ -149,6 +149,11 @@ struct Frame {
     FrameFigures figures, staticFigures;
 };
 
+/// Of consecutive frames.
+Frame& frameOf(std::vector<Frame>& batch, int number) {
+    return batch.at(static_cast<std::size_t>(number - batch.front().number));
+}
+
 /// What is found out where a frame is drawn, for other processes.
 Json told(const FrameFigures& f) {
     Json json{{"vws", f.vws},         {"visibility", f.visibility}, {"opacity", f.opacity},    {"fs", f.fs},
@@ -322,9 +327,9 @@ void Sequence::readTogether(int frame) const {
         passOver(series, frame, error);
         problem = series.summary(frame).problem;
     }
-    for (const auto& other : m_work.gather(std::as_bytes(std::span(problem)))) {
-        if (other.empty()) continue;
-        series.noteProblem(frame, {reinterpret_cast<const char*>(other.data()), other.size()});
+    for (const Json& said : gatherAll(Json::array({problem}))) {
+        if (said == "") continue;
+        series.noteProblem(frame, said.get<std::string>());
         throw FileError("some rank cannot read it", series.listing().fileOf(frame), "check the file");
     }
 }
@@ -332,9 +337,8 @@ void Sequence::readTogether(int frame) const {
 /// Whether all processes see the folder: those that write into another one of the same name would lose their frames.
 void Sequence::requireSharedFolder() const {
     if (m_work.parts == 1) return;
-    std::string name = ".pellucid-" + std::to_string(getpid()) + ".part";
-    const auto all = m_work.gather(std::as_bytes(std::span(name)));
-    name.assign(reinterpret_cast<const char*>(all.front().data()), all.front().size());
+    const std::string mine = ".pellucid-" + std::to_string(getpid()) + ".part";
+    const auto name = gatherAll(Json::array({mine})).front().get<std::string>(); // the first one's, for all
     const std::string path = inFolder(m_o, name);
     std::string problem;
     try {
@@ -345,11 +349,12 @@ void Sequence::requireSharedFolder() const {
     m_work.gather({});
     std::error_code failure;
     if (problem.empty() && !fs::exists(path, failure)) problem = "not all processes see this folder";
-    std::string said;
-    for (const auto& other : m_work.gather(std::as_bytes(std::span(problem))))
-        if (said.empty()) said.assign(reinterpret_cast<const char*>(other.data()), other.size());
+    const std::vector<Json> problems = gatherAll(Json::array({problem}));
     if (m_work.part == 0) fs::remove(path, failure);
-    if (!said.empty()) throw FileError(said, m_o.out, "name a folder that all machines share, and can write to");
+    for (const Json& said : problems)
+        if (said != "")
+            throw FileError(said.get<std::string>(), m_o.out,
+                            "name a folder that all machines share, and can write to");
 }
 
 /// Reads the frame, ready to be drawn and measured.
@@ -371,7 +376,7 @@ void Sequence::follow(Frame& frame) {
         followRead(frame);
     } catch (const FileError& e) { // of one rank, perhaps: others are amid a sweep
         if (m_work.parts == 1) throw;
-        throw Error(e.problem(), e.where(), e.whatToDo(), e.remedy());
+        throw Error(e);
     }
 }
 
@@ -419,13 +424,12 @@ void Sequence::agree(std::vector<Frame>& batch) const {
     Json mine = Json::array();
     for (const Frame& frame : batch)
         if (isMine(frame)) mine.push_back({frame.number, frame.problem});
-    for (const Json& found : gatherAll(mine))
-        for (Frame& frame : batch) {
-            if (frame.number != found[0].get<int>()) continue;
-            frame.problem = found[1].get<std::string>();
-            if (m_scene.series->summary(frame.number).problem != frame.problem) // files come and go
-                m_scene.series->noteProblem(frame.number, frame.problem);
-        }
+    for (const Json& found : gatherAll(mine)) {
+        Frame& frame = frameOf(batch, found[0]);
+        frame.problem = found[1].get<std::string>();
+        if (m_scene.series->summary(frame.number).problem != frame.problem) // files come and go
+            m_scene.series->noteProblem(frame.number, frame.problem);
+    }
 }
 
 Json Sequence::jsonOf(const Frame& frame) const {
@@ -497,16 +501,16 @@ void Sequence::gather(std::vector<Frame>& batch) const {
                             {"figures", told(frame.figures)},
                             {"static", told(frame.staticFigures)},
                             {"tf", jsonFromTf(frame.tf)}});
-    for (const Json& made : gatherAll(mine))
-        for (Frame& frame : batch) {
-            if (frame.number != made["frame"].get<int>() || isMine(frame)) continue;
-            frame.figures = brokenFigures(*m_scene.series, frame.number);
-            frame.figures.problem.clear();
-            frame.staticFigures = frame.figures;
-            take(made["figures"], frame.figures);
-            take(made["static"], frame.staticFigures);
-            frame.tf = tfFromJson(made["tf"], fileOf(m_o, frame.number, kTfSuffix));
-        }
+    for (const Json& made : gatherAll(mine)) {
+        Frame& frame = frameOf(batch, made["frame"]);
+        if (isMine(frame)) continue;
+        frame.figures = brokenFigures(*m_scene.series, frame.number);
+        frame.figures.problem.clear();
+        frame.staticFigures = frame.figures;
+        take(made["figures"], frame.figures);
+        take(made["static"], frame.staticFigures);
+        frame.tf = tfFromJson(made["tf"], fileOf(m_o, frame.number, kTfSuffix));
+    }
 }
 
 /// Figures and pictures of frames, side by side.

@@ -34,7 +34,7 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
             requireMemory(ofPartHere(useUnder(settings), *input.volume), input.volume->title, input.volume->dimsHere(),
                           input.volume->sampleType());
         } catch (const FileError& e) { // the file is sound: a frame of a series is not to be passed over
-            throw Error(e.problem(), e.where(), e.whatToDo(), e.remedy());
+            throw Error(e);
         }
         m_engine = settings.profile == Profile::Published ? makePublishedEngine(input.volume)
                                                           : makeEngine(settings.engine, input.volume, settings.quality);
