@@ -18,12 +18,14 @@ double largestShare(const Decomposition& blocks, const Grid<double>& work, const
     std::vector<double> of(blocks.blocks().size(), 0.0);
     const CellGrid grid(Int3(0), dims);
     double all = 0;
-    for (std::size_t at = 0; at < work.size(); ++at) { // in one order: ranks have to agree
-        const Int3 cell = voxelAt(grid.cells, at);
-        const int block = blocks.blockOf({grid.begin(0, cell.x), grid.begin(1, cell.y), grid.begin(2, cell.z)});
-        of[static_cast<std::size_t>(block)] += work[at];
-        all += work[at];
-    }
+    for (int k = 0; k < grid.cells.z; ++k) // in one order: ranks have to agree
+        for (int j = 0; j < grid.cells.y; ++j) {
+            const int y = grid.begin(1, j), z = grid.begin(2, k);
+            for (int i = 0; i < grid.cells.x; ++i) {
+                of[static_cast<std::size_t>(blocks.blockOf({grid.begin(0, i), y, z}))] += work.at(i, j, k);
+                all += work.at(i, j, k);
+            }
+        }
     return std::ranges::max(of) / all;
 }
 

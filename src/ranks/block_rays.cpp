@@ -55,6 +55,14 @@ std::optional<SweepReach> common(const SweepReach& a, const SweepReach& b) {
     return both;
 }
 
+/// The smallest rectangle around both.
+SweepRect spanning(const SweepRect& a, const SweepRect& b) {
+    if (a.rays() == 0) return b;
+    if (b.rays() == 0) return a;
+    return {std::min(a.firstRow, b.firstRow), std::max(a.endRow, b.endRow), std::min(a.firstCol, b.firstCol),
+            std::max(a.endCol, b.endCol)};
+}
+
 } // namespace
 
 SweepRect common(const SweepRect& a, const SweepRect& b) {
@@ -68,7 +76,7 @@ std::vector<int> sweepOrder(const Camera& camera, const Geometry& whole, const D
 }
 
 BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const SweepPass& axes, const Int3& dims,
-                    const Decomposition& blocks, int own) {
+                    const Decomposition& blocks, const std::vector<int>& order, int own) {
     const Int3 whole = axes.permuted(dims);
     const auto raysAroundBox = [&](const SweepBox& box) {
         SweepInput in = pass;
@@ -83,7 +91,14 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
     rays.all = raysAroundBox({{0, 0, 0}, {whole.x, whole.y, whole.z}});
     rays.wanted = raysAroundBox(rays.box);
     if (isEmpty(region)) return rays;
-    rays.through = raysThrough(pass, layer, rays.reach);
+    const SweepRect inside = raysThrough(pass, layer, rays.reach);
+    // What a ray has met here is asked for by those who hand it over later: blocks behind this one that it reaches.
+    for (auto behind = std::ranges::find(order, own); behind != order.end(); ++behind) {
+        const VoxelRegion& other = blocks.blocks()[static_cast<std::size_t>(*behind)];
+        if (*behind == own || isEmpty(other)) continue;
+        rays.through =
+            spanning(rays.through, common(inside, raysThrough(pass, layer, ownReach(boxOf(other, axes, dims), whole))));
+    }
     for (std::size_t b = 0; b < blocks.blocks().size(); ++b) {
         if (static_cast<int>(b) == own || isEmpty(blocks.blocks()[b])) continue;
         const SweepBox box = boxOf(blocks.blocks()[b], axes, dims);
@@ -91,7 +106,9 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
         const auto entered = common(around, rays.reach);
         if (!entered) continue;
         const SweepRect entering = common(raysThrough(pass, layer, *entered), raysAroundBox(box));
-        if (entering.rays() > 0) rays.entries.push_back({static_cast<int>(b), around, entering});
+        if (entering.rays() == 0) continue;
+        rays.entries.push_back({static_cast<int>(b), around, entering});
+        rays.through = spanning(rays.through, common(inside, entering));
     }
     return rays;
 }

@@ -30,11 +30,11 @@ struct BlockRays {
     SweepReach around;
     SweepRect all;                   ///< those of the whole volume
     SweepRect wanted;                ///< around the voxels of the block
-    SweepRect through;               ///< those that pass through `reach`
+    SweepRect through;               ///< those that pass through `reach` and are asked for behind it or beside it
     std::vector<BlockEntry> entries; ///< none where the block is empty
 };
-/// `pass`: with the rays of the sweep set (setSweepRays()).
+/// `pass`: with the rays of the sweep set (setSweepRays()); `order`: sweepOrder().
 BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const SweepPass& axes, const Int3& dims,
-                    const Decomposition& blocks, int own);
+                    const Decomposition& blocks, const std::vector<int>& order, int own);
 
 } // namespace pellucid

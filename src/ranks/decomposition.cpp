@@ -1,6 +1,7 @@
 #include "ranks/decomposition.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -62,12 +63,17 @@ int Decomposition::cutOf(const VoxelRegion& region, int axis, double share, cons
                    size;
         };
         std::vector<double> layers(static_cast<std::size_t>(cells[axis]), 0.0);
+        std::array<std::vector<double>, 3> overlaps;
+        for (int a = 0; a < 3; ++a)
+            for (int cell = 0; cell < cells[a]; ++cell)
+                overlaps[static_cast<std::size_t>(a)].push_back(overlap(a, cell));
         for (int k = 0; k < cells.z; ++k)
-            for (int j = 0; j < cells.y; ++j)
-                for (int i = 0; i < cells.x; ++i) {
-                    const double part = overlap(0, i) * overlap(1, j) * overlap(2, k);
-                    if (part > 0) layers[static_cast<std::size_t>(Int3(i, j, k)[axis])] += part * work->at(i, j, k);
-                }
+            for (int j = 0; j < cells.y; ++j) {
+                const double row = overlaps[1][static_cast<std::size_t>(j)] * overlaps[2][static_cast<std::size_t>(k)];
+                for (int i = 0; i < cells.x && row > 0; ++i)
+                    layers[static_cast<std::size_t>(Int3(i, j, k)[axis])] +=
+                        row * overlaps[0][static_cast<std::size_t>(i)] * work->at(i, j, k);
+            }
         double all = 0, below = 0;
         for (const double layer : layers) all += layer;
         for (std::size_t n = 0; n < layers.size() && all > 0; ++n) {

@@ -88,7 +88,7 @@ private:
     /// measures the block's voxels of the layer.
     void sweepLayer(const SweepInput& pass, int lanes, const SweepPass& axes, const SweepLayer& layer,
                     const std::vector<int>& order, std::vector<double>& sums, const JobControl& job) {
-        const BlockRays rays = blockRays(pass, layer, axes, m_block.whole.dims, m_block.blocks, m_block.own);
+        const BlockRays rays = blockRays(pass, layer, axes, m_block.whole.dims, m_block.blocks, order, m_block.own);
         CarriedDepths carried;
         if (!isEmpty(m_block.block())) {
             SweepInput in = pass;

@@ -45,7 +45,7 @@ Traffic expectedTraffic(const Geometry& whole, const Decomposition& blocks, cons
         for (const SweepLayer& layer : sweepLayers(in)) {
             for (int own = 0; own < count; ++own) {
                 const auto from = static_cast<std::size_t>(own);
-                const BlockRays rays = blockRays(in, layer, pass, whole.dims, blocks, own);
+                const BlockRays rays = blockRays(in, layer, pass, whole.dims, blocks, order, own);
                 const DepthTiles tiles(rays.all, count);
                 if (own == 0 && tiles.count() > 0)
                     traffic.rounds += 2 * static_cast<std::uint64_t>((tiles.count() + tiles.perRound(lanes) - 1) /

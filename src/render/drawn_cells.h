@@ -1,14 +1,17 @@
 // A coarse grid over a volume, and which of its cells a transfer function draws.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "base/job.h"
 #include "render/clipping.h"
 #include "tf/transfer_function.h"
-#include "volume/fetched_values.h"
 #include "volume/volume.h"
+#include "volume/volume_part.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -28,20 +31,26 @@ struct CellGrid {
     Int3 voxelIn(const Int3& cell) const;
 };
 
-/// valueOf(voxel, intensity) for the voxel that stands for each cell; the intensity is NaN where it is invalid.
-/// Collective where the voxels are in several processes. Throws Cancelled.
+/// valueOf(voxel, intensity), a number, for the voxel that stands for each cell; the intensity is NaN where it is
+/// invalid. Where the voxels are in several processes each makes the numbers of its own voxels, and gets all:
+/// collective. Throws Cancelled.
 template <class ValueOf>
 auto ofCells(const Volume& volume, const CellGrid& grid, const JobControl& job, const ValueOf& valueOf) {
-    Grid<decltype(valueOf(Int3(), 0.0))> result(grid.cells);
-    const auto wanted = [&](const auto& ask) {
-        for (std::size_t i = 0; i < result.size(); ++i) ask(grid.voxelIn(voxelAt(grid.cells, i)));
-    };
-    withValues(volume, wanted, [&](const auto& values) {
+    using Value = decltype(valueOf(Int3(), 0.0));
+    Grid<Value> result(grid.cells);
+    const VolumePart part = partHere(volume);
+    if (part.volume != nullptr)
         forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
-            const Int3 v = grid.voxelIn(cell);
-            result[at] = valueOf(v, volume.intensityOfValue(values(voxelIndex(volume.dims(), v.x, v.y, v.z))));
+            const Int3 voxel = grid.voxelIn(cell);
+            if (!part.owns(voxel)) return;
+            const std::size_t i = part.indexOf(voxel);
+            result[at] = valueOf(voxel, part.volume->isValid(i) ? volume.intensityOfValue(part.volume->value(i))
+                                                                : std::numeric_limits<double>::quiet_NaN());
         });
-    });
+    if (volume.elsewhere() == nullptr) return result;
+    std::vector<double> all(result.begin(), result.end()); // 0 for the voxels of others
+    volume.elsewhere()->sum(all);
+    std::ranges::transform(all, result.begin(), [](double value) { return static_cast<Value>(value); });
     return result;
 }
 

@@ -1,7 +1,10 @@
 #include "volume/histogram.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "base/parallel.h"
 #include "volume/intensity_grid.h"
@@ -34,22 +37,46 @@ Histogram makeHistogram(const Volume& volume, int bins) {
     std::vector<std::vector<std::uint64_t>> partial(static_cast<std::size_t>(pieces));
     std::vector<std::uint8_t> occurs(codes, 0);
     std::vector<std::vector<std::uint8_t>> occursIn(partial.size()); // by code
-    const auto count = [&](const auto& values) {
+    /// Where a value counts.
+    struct Place {
+        int bin = -1; ///< none: it is invalid
+        std::uint16_t code = 0;
+    };
+    const auto placeOf = [&](double value) {
+        const double s = volume.intensityOfValue(value);
+        return std::isnan(s) ? Place{} : Place{histogramBin(s, bins), coder.code(s)};
+    };
+    const auto count = [&]<class T>(const SampleArray<T>& values) {
+        constexpr bool kFewValues = std::is_integral_v<T> && sizeof(T) <= 2;
+        constexpr int kLowest = kFewValues ? static_cast<int>(std::numeric_limits<T>::lowest()) : 0;
+        // So few values are possible that each is counted, and what it counts for is found once.
+        std::vector<Place> places;
+        if constexpr (kFewValues)
+            for (int v = kLowest; v <= std::numeric_limits<T>::max(); ++v) places.push_back(placeOf(v));
         parallelFor(partial.size(), [&](std::size_t p) {
             auto& counts = partial[p];
             counts.assign(static_cast<std::size_t>(bins), 0);
             occursIn[p].assign(codes, 0);
+            const auto add = [&](const Place& place, std::uint64_t voxels) {
+                if (place.bin < 0 || voxels == 0) return;
+                counts[static_cast<std::size_t>(place.bin)] += voxels;
+                occursIn[p][place.code] = 1;
+            };
+            // Neighbours are often alike: two tables, so that an addition need not wait for the one before.
+            std::array<std::vector<std::uint64_t>, 2> ofValue;
+            for (auto& table : ofValue) table.assign(places.size(), 0);
             const int piece = static_cast<int>(p);
-            part.forOwnRows(layers * piece / pieces, layers * (piece + 1) / pieces,
-                            [&](const Int3&, std::size_t row, int voxels) {
-                                const std::size_t end = row + static_cast<std::size_t>(voxels);
-                                for (std::size_t i = row; i < end; ++i) {
-                                    const double s = volume.intensityOfValue(static_cast<double>(values[i]));
-                                    if (std::isnan(s)) continue;
-                                    ++counts[static_cast<std::size_t>(histogramBin(s, bins))];
-                                    occursIn[p][coder.code(s)] = 1;
-                                }
-                            });
+            part.forOwnRows(
+                layers * piece / pieces, layers * (piece + 1) / pieces, [&](const Int3&, std::size_t row, int voxels) {
+                    const std::size_t end = row + static_cast<std::size_t>(voxels);
+                    for (std::size_t i = row; i < end; ++i) {
+                        if constexpr (kFewValues)
+                            ++ofValue[i % 2][static_cast<std::size_t>(static_cast<int>(values[i]) - kLowest)];
+                        else
+                            add(placeOf(static_cast<double>(values[i])), 1);
+                    }
+                });
+            for (std::size_t v = 0; v < places.size(); ++v) add(places[v], ofValue[0][v] + ofValue[1][v]);
         });
     };
     if (part.volume != nullptr) withSamples(*part.volume, count);

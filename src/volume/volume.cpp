@@ -1,6 +1,8 @@
 #include "volume/volume.h"
 
+#include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -33,6 +35,16 @@ Statistics statisticsOf(const Samples& samples, std::optional<double> missing) {
             parallelFor(blocks.size(), [&](std::size_t b) {
                 Statistics s;
                 const std::size_t end = std::min(values.size(), (b + 1) * kBlock);
+                using T = typename std::decay_t<decltype(values)>::value_type;
+                if (std::is_integral_v<T> && !missing) { // all are valid, and vectors compare whole numbers quickest
+                    T lo = std::numeric_limits<T>::max(), hi = std::numeric_limits<T>::lowest();
+                    for (std::size_t i = b * kBlock; i < end; ++i) {
+                        lo = std::min(lo, values[i]);
+                        hi = std::max(hi, values[i]);
+                    }
+                    blocks[b] = {static_cast<double>(lo), static_cast<double>(hi), 0};
+                    return;
+                }
                 for (std::size_t i = b * kBlock; i < end; ++i) {
                     const double v = static_cast<double>(values[i]);
                     if (!valid(v, missing)) {

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <functional>
+#include <string_view>
+#include <thread>
 
 #include <mpi.h>
 
@@ -26,14 +31,28 @@ void require(int code, const char* doing) {
                 "", "see what mpirun says of the network and the ranks");
 }
 
+/// Waits for what has been begun. MPI's own calls ask without a pause, and take the processor from ranks that have
+/// something to do; here it is asked every so often, once the answer is not at hand.
+void finish(std::span<MPI_Request> requests, const char* doing) {
+    constexpr std::chrono::microseconds kAtHand{50}, kPause{50};
+    const auto begin = std::chrono::steady_clock::now();
+    for (int done = 0;;) {
+        require(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE), doing);
+        if (done != 0) return;
+        if (std::chrono::steady_clock::now() - begin > kAtHand) std::this_thread::sleep_for(kPause);
+    }
+}
+void finish(MPI_Request request, const char* doing) { finish({&request, 1}, doing); }
+
 /// Of the program that runs, so that ranks with different ones find out.
 std::uint64_t programHash() {
     std::ifstream in("/proc/self/exe", std::ios::binary);
-    std::uint64_t hash = 0xcbf29ce484222325u;
+    std::uint64_t hash = 0;
     std::vector<char> piece(1 << 20);
-    while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
-        for (std::streamsize i = 0; i < in.gcount(); ++i)
-            hash = (hash ^ static_cast<unsigned char>(piece[static_cast<std::size_t>(i)])) * 0x100000001b3u;
+    while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
+        const std::string_view read(piece.data(), static_cast<std::size_t>(in.gcount()));
+        hash = std::rotl(hash, 1) ^ std::hash<std::string_view>{}(read);
+    }
     return hash;
 }
 
@@ -114,7 +133,9 @@ void MpiRanks::requireAll() {
     if (m_lost) throw RankLost(); // others are past this call
     ++m_traffic.rounds;
     int well = 1, all = 0;
-    require(MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm), "reach all ranks");
+    MPI_Request request = MPI_REQUEST_NULL;
+    require(MPI_Iallreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm, &request), "reach all ranks");
+    finish(request, "reach all ranks");
     if (all == 1) return;
     m_lost = true;
     throw RankLost();
@@ -125,7 +146,9 @@ MpiRanks::Ending MpiRanks::leave(const Ending& mine) {
     // The others may be in any of their calls, which all begin with requireAll().
     if (!m_lost) {
         int well = mine.status == 0 ? 1 : 0, all = 0;
-        MPI_Allreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm);
+        MPI_Request request = MPI_REQUEST_NULL; // the counterpart of requireAll()'s
+        MPI_Iallreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm, &request);
+        finish(request, "end");
     }
     const std::string& text = mine.message;
     const std::array<int, 2> own{mine.status, static_cast<int>(text.size())};
@@ -156,8 +179,10 @@ std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
     const auto count = static_cast<std::size_t>(m_size);
     std::vector<std::uint64_t> send(count, 0), receive(count, 0);
     for (const RankMessage& message : messages) send[static_cast<std::size_t>(message.rank)] = message.bytes.size();
-    require(MPI_Alltoall(send.data(), 1, MPI_UINT64_T, receive.data(), 1, MPI_UINT64_T, m_group->comm),
+    MPI_Request sizes = MPI_REQUEST_NULL;
+    require(MPI_Ialltoall(send.data(), 1, MPI_UINT64_T, receive.data(), 1, MPI_UINT64_T, m_group->comm, &sizes),
             "tell how much is sent");
+    finish(sizes, "tell how much is sent");
     std::vector<RankMessage> arrived;
     for (std::size_t r = 0; r < count; ++r) {
         if (receive[r] == 0) continue;
@@ -188,7 +213,7 @@ std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {
                     "send");
     }
     ++m_traffic.rounds;
-    require(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE), "exchange messages");
+    finish(requests, "exchange messages");
     return arrived;
 }
 
@@ -197,20 +222,23 @@ void MpiRanks::sum(std::span<double> values) {
     const Together together(m_group->comm);
     const int count = static_cast<int>(values.size());
     std::vector<double> other(values.size());
+    MPI_Request request = MPI_REQUEST_NULL;
     // Pairs, pairs of pairs, …: the order depends on the number of ranks alone.
     for (int step = 1; step < m_size; step *= 2) {
         if ((m_rank & step) != 0) {
-            require(MPI_Send(values.data(), count, MPI_DOUBLE, m_rank - step, kTag, m_group->comm), "send");
+            require(MPI_Isend(values.data(), count, MPI_DOUBLE, m_rank - step, kTag, m_group->comm, &request), "send");
+            finish(request, "send");
             m_traffic.bytes += values.size_bytes();
             ++m_traffic.messages;
             break;
         }
         if (m_rank + step >= m_size) continue;
-        require(MPI_Recv(other.data(), count, MPI_DOUBLE, m_rank + step, kTag, m_group->comm, MPI_STATUS_IGNORE),
-                "receive");
+        require(MPI_Irecv(other.data(), count, MPI_DOUBLE, m_rank + step, kTag, m_group->comm, &request), "receive");
+        finish(request, "receive");
         for (std::size_t i = 0; i < values.size(); ++i) values[i] += other[i];
     }
-    require(MPI_Bcast(values.data(), count, MPI_DOUBLE, 0, m_group->comm), "tell all ranks");
+    require(MPI_Ibcast(values.data(), count, MPI_DOUBLE, 0, m_group->comm, &request), "tell all ranks");
+    finish(request, "tell all ranks");
 }
 
 std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> bytes) {
@@ -219,7 +247,10 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
     const auto count = static_cast<std::size_t>(m_size);
     const std::uint64_t mine = bytes.size();
     std::vector<std::uint64_t> sizes(count);
-    require(MPI_Allgather(&mine, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, m_group->comm), "tell all ranks");
+    MPI_Request request = MPI_REQUEST_NULL;
+    require(MPI_Iallgather(&mine, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, m_group->comm, &request),
+            "tell all ranks");
+    finish(request, "tell all ranks");
     // A rank after the other where one is large, since MPI counts in int; else all at once.
     std::vector<std::vector<std::byte>> all(count);
     std::uint64_t total = 0;
@@ -232,9 +263,10 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
             counts[r] = static_cast<int>(sizes[r]);
             starts[r] = static_cast<int>(at);
         }
-        require(MPI_Allgatherv(bytes.data(), static_cast<int>(mine), MPI_BYTE, joined.data(), counts.data(),
-                               starts.data(), MPI_BYTE, m_group->comm),
+        require(MPI_Iallgatherv(bytes.data(), static_cast<int>(mine), MPI_BYTE, joined.data(), counts.data(),
+                                starts.data(), MPI_BYTE, m_group->comm, &request),
                 "tell all ranks");
+        finish(request, "tell all ranks");
         for (std::size_t r = 0; r < count; ++r) {
             const auto first = joined.begin() + starts[r];
             all[r].assign(first, first + counts[r]);
@@ -244,10 +276,12 @@ std::vector<std::vector<std::byte>> MpiRanks::gather(std::span<const std::byte> 
     for (std::size_t r = 0; r < count; ++r) {
         if (static_cast<int>(r) == m_rank) all[r].assign(bytes.begin(), bytes.end());
         all[r].resize(sizes[r]);
-        for (std::size_t at = 0; at < sizes[r]; at += kMostAtOnce)
-            require(MPI_Bcast(all[r].data() + at, static_cast<int>(std::min<std::size_t>(kMostAtOnce, sizes[r] - at)),
-                              MPI_BYTE, static_cast<int>(r), m_group->comm),
+        for (std::size_t at = 0; at < sizes[r]; at += kMostAtOnce) {
+            require(MPI_Ibcast(all[r].data() + at, static_cast<int>(std::min<std::size_t>(kMostAtOnce, sizes[r] - at)),
+                               MPI_BYTE, static_cast<int>(r), m_group->comm, &request),
                     "tell all ranks");
+            finish(request, "tell all ranks");
+        }
     }
     return all;
 }

@@ -160,7 +160,7 @@ void SweepVolume::makeCodes() {
     if (!grid.codes.isNarrow() && (grid.codeStep > 1 || someInvalid)) makeOwnCodes(grid);
     m_firstBlock = m_first / kBlockSize;
     m_blocks = (m_first + m_volume->dims() - 1) / kBlockSize + 1 - m_firstBlock;
-    findRanges();
+    narrowCodes() ? findRanges(narrowCodes()) : findRanges(wideCodes());
 }
 
 void SweepVolume::makeOwnCodes(const IntensityGrid& grid) {
@@ -177,9 +177,11 @@ void SweepVolume::makeOwnCodes(const IntensityGrid& grid) {
 }
 
 /// The codes that occur in each block of voxels and one voxel around it: what interpolation there can give.
-void SweepVolume::findRanges() {
+template <class Code>
+void SweepVolume::findRanges(const Code* codes) {
     const Int3 n = m_volume->dims();
-    m_ranges.assign(voxelCount(m_blocks), {kInvalidCode, 0});
+    const bool someInvalid = m_codeSpace.someInvalid;
+    m_ranges.resize(voxelCount(m_blocks));
     parallelFor(asSize(m_blocks.z), [&](std::size_t bz) {
         // Voxels of the stored ones that block b of an axis reaches.
         const auto firstOf = [&](int b, int a) {
@@ -189,31 +191,27 @@ void SweepVolume::findRanges() {
             return std::min(n[a] - 1, (b + m_firstBlock[a] + 1) * kBlockSize - m_first[a]);
         };
         const int k = static_cast<int>(bz);
+        // Across the rows of a row of blocks first: whole vectors at a time.
+        std::vector<Code> low(asSize(n.x)), high(low.size());
         for (int by = 0; by < m_blocks.y; ++by) {
-            auto* row = &m_ranges[voxelIndex(m_blocks, 0, by, k)];
+            std::ranges::fill(low, std::numeric_limits<Code>::max());
+            std::ranges::fill(high, Code{0});
             for (int z = firstOf(k, 2); z <= lastOf(k, 2); ++z)
                 for (int y = firstOf(by, 1); y <= lastOf(by, 1); ++y) {
-                    const std::size_t first = voxelIndex(n, 0, y, z);
-                    narrowCodes() ? widen(row, narrowCodes() + first) : widen(row, wideCodes() + first);
+                    const Code* row = codes + voxelIndex(n, 0, y, z);
+                    for (std::size_t x = 0; x < low.size(); ++x) {
+                        low[x] = std::min(low[x], row[x]); // the invalid code is the largest
+                        high[x] = std::max(high[x], someInvalid && row[x] == kInvalidCode ? Code{0} : row[x]);
+                    }
                 }
+            for (int block = 0; block < m_blocks.x; ++block) {
+                const auto first = firstOf(block, 0), end = lastOf(block, 0) + 1;
+                m_ranges[voxelIndex(m_blocks, block, by, k)] = {
+                    *std::min_element(low.begin() + first, low.begin() + end),
+                    *std::max_element(high.begin() + first, high.begin() + end)};
+            }
         }
     });
-}
-
-template <class Code>
-void SweepVolume::widen(std::array<std::uint16_t, 2>* ranges, const Code* codes) const {
-    const int nx = m_volume->dims().x;
-    for (int block = 0; block < m_blocks.x; ++block) {
-        auto [low, high] = ranges[block];
-        const int begin = (block + m_firstBlock.x) * kBlockSize - m_first.x,
-                  last = std::min(nx - 1, begin + kBlockSize);
-        for (int x = std::max(0, begin - 1); x <= last; ++x) {
-            if (codes[x] == kInvalidCode && m_codeSpace.someInvalid) continue;
-            low = std::min<std::uint16_t>(low, codes[x]);
-            high = std::max<std::uint16_t>(high, codes[x]);
-        }
-        ranges[block] = {low, high};
-    }
 }
 
 void SweepVolume::setClipping(SweepInput& in, const VoxelClipping& clipping, const SweepPass& pass) {

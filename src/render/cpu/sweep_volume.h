@@ -66,9 +66,8 @@ public:
 private:
     void makeCodes();
     void makeOwnCodes(const IntensityGrid& grid);
-    void findRanges();
     template <class Code>
-    void widen(std::array<std::uint16_t, 2>* ranges, const Code* codes) const;
+    void findRanges(const Code* codes);
     const std::uint8_t* narrowCodes() const { return m_shared ? m_shared->codes.narrow() : nullptr; }
     const std::uint16_t* wideCodes() const { return m_shared ? m_shared->codes.wide() : m_codes.data(); }
     static void setClipping(SweepInput& in, const VoxelClipping& clipping, const SweepPass& pass);

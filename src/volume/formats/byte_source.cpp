@@ -55,9 +55,13 @@ std::size_t FileBytes::read(char* to, std::size_t count) {
 }
 
 bool FileBytes::skip(std::uint64_t count) {
-    if (count > static_cast<std::uint64_t>(std::numeric_limits<std::streamoff>::max()))
+    // What is near is in the buffer already, or as quick to read as to pass over: seeking empties the buffer.
+    constexpr std::uint64_t kNear = 8192;
+    if (count <= kNear)
+        m_in.ignore(static_cast<std::streamsize>(count));
+    else if (count > static_cast<std::uint64_t>(std::numeric_limits<std::streamoff>::max()))
         m_in.setstate(std::ios::failbit);
-    else if (count > 0)
+    else
         m_in.seekg(static_cast<std::streamoff>(count), std::ios::cur);
     return static_cast<bool>(m_in);
 }

@@ -329,7 +329,10 @@ public:
         std::uint64_t start = m_selection.first;
         for (int a = 0; a < 3; ++a) start += static_cast<std::uint64_t>(first[a]) * stride[static_cast<std::size_t>(a)];
         m_reader.readLine(start, static_cast<std::uint64_t>(count), [&](const T* piece, std::uint64_t voxels) {
-            for (std::uint64_t v = 0; v < voxels; ++v) *to++ = piece[v * stride[0]];
+            if (stride[0] == 1)
+                to = std::copy_n(piece, voxels, to);
+            else
+                for (std::uint64_t v = 0; v < voxels; ++v) *to++ = piece[v * stride[0]];
         });
     }
 
@@ -424,13 +427,12 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
     for (int k = 0; k < size.z; ++k) {
         for (int j = 0; j < size.y; ++j) {
             rows.read(lo + Int3(0, j, k), size.x, values.data());
-            std::ranges::transform(values, row.begin(), convert);
-            if (asItIs)
-                std::copy(row.begin(), row.end(),
-                          kept.data() + layer * static_cast<std::size_t>(k) + row.size() * static_cast<std::size_t>(j));
-            else
-                means.add(row.data(), j);
-            progress.add(row.size());
+            Kept* const to =
+                asItIs ? kept.data() + layer * static_cast<std::size_t>(k) + values.size() * static_cast<std::size_t>(j)
+                       : row.data();
+            std::ranges::transform(values, to, convert);
+            if (!asItIs) means.add(row.data(), j);
+            progress.add(values.size());
         }
         if (asItIs) continue;
         if (k % plan.factors.z == plan.factors.z - 1 || k == size.z - 1)
