@@ -102,6 +102,10 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
     for (std::size_t b = 0; b < blocks.blocks().size(); ++b) {
         if (static_cast<int>(b) == own || isEmpty(blocks.blocks()[b])) continue;
         const SweepBox box = boxOf(blocks.blocks()[b], axes, dims);
+        if (const auto left = common(rays.around, ownReach(box, whole))) {
+            const SweepRect entering = common(raysThrough(pass, layer, *left), rays.wanted);
+            if (entering.rays() > 0) rays.entering.push_back(entering);
+        }
         const SweepReach around = reachAround(box);
         const auto entered = common(around, rays.reach);
         if (!entered) continue;

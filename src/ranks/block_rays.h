@@ -31,7 +31,8 @@ struct BlockRays {
     SweepRect all;                   ///< those of the whole volume
     SweepRect wanted;                ///< around the voxels of the block
     SweepRect through;               ///< those that pass through `reach` and are asked for behind it or beside it
-    std::vector<BlockEntry> entries; ///< none where the block is empty
+    std::vector<BlockEntry> entries; ///< into the surroundings of others; none where the block is empty
+    std::vector<SweepRect> entering; ///< those that may come into its own from others
 };
 /// `pass`: with the rays of the sweep set (setSweepRays()); `order`: sweepOrder().
 BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const SweepPass& axes, const Int3& dims,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -40,6 +41,11 @@ public:
     virtual int rank() const = 0; ///< of this one, in [0, size())
     virtual int size() const = 0;
 
+    /// A little work: false where there is none left.
+    using Work = std::function<bool()>;
+    /// Waits for all ranks to come here, and does as much of the work as there is time for. What it throws is thrown
+    /// once all are here.
+    virtual void await(const Work& meanwhile) = 0;
     /// Hands over messages, at most one for each rank; returns those for this rank, by ascending rank of the sender.
     virtual std::vector<RankMessage> exchange(std::vector<RankMessage> messages) = 0;
     /// The elements of all ranks added up, in an order that depends on size() alone: all get the same bits.

@@ -68,10 +68,10 @@ int DepthTiles::perRound(int lanes) const {
     return static_cast<int>(std::max(ranks, kBytesAtOnce * ranks / bytes));
 }
 
-RayDepths depthsBefore(Communicator& ranks, const std::vector<int>& order, const SweepRect& all,
-                       const SweepRect& wanted, CarriedDepths carried, int lanes) {
-    RayDepths before(wanted, lanes, kNotHanded);
-    if (all.rays() == 0) return before;
+void findDepthsBefore(Communicator& ranks, const std::vector<int>& order, const SweepRect& all, CarriedDepths carried,
+                      RayDepths& before) {
+    if (all.rays() == 0) return;
+    const int lanes = before.lanes;
     const DepthTiles tiles(all, ranks.size());
     const auto count = static_cast<std::size_t>(ranks.size());
     const auto lanesOf = static_cast<std::size_t>(lanes);
@@ -131,7 +131,6 @@ RayDepths depthsBefore(Communicator& ranks, const std::vector<int>& order, const
                 for (std::size_t lane = 0; lane < lanesOf; ++lane) here[lane] = handed[lane];
             });
     }
-    return before;
 }
 
 } // namespace pellucid

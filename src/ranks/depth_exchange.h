@@ -61,8 +61,8 @@ struct DepthPartHead {
 /// into tiles; each tile has a rank that adds up what all blocks tell of it, in their `order` from the eye on, and
 /// tells each of them. Two rounds of messages for a part of the tiles at a time, whatever the number of ranks.
 ///   all     the rays of the layer
-///   wanted  those of this block
-RayDepths depthsBefore(Communicator& ranks, const std::vector<int>& order, const SweepRect& all,
-                       const SweepRect& wanted, CarriedDepths carried, int lanes);
+///   before  those of this block; set where a ray is handed over
+void findDepthsBefore(Communicator& ranks, const std::vector<int>& order, const SweepRect& all, CarriedDepths carried,
+                      RayDepths& before);
 
 } // namespace pellucid

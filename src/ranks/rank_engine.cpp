@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/parallel.h"
 #include "ranks/block_rays.h"
 #include "ranks/depth_exchange.h"
 #include "ranks/rank_volume.h"
@@ -111,8 +112,7 @@ private:
                 m_runner.run(in, sweepPieces(in, layer), none, job.part(0, 2));
             }
         }
-        RayDepths before = depthsBefore(m_ranks, order, rays.all, rays.wanted, std::move(carried), lanes);
-        if (rays.wanted.rays() == 0) return;
+        RayDepths before(rays.wanted, lanes, 0);
         SweepInput in = pass;
         in.window = rays.box;
         in.bounded = true;
@@ -121,17 +121,40 @@ private:
         begin(in, layer, before);
         in.startRect = before.rect;
         in.startDepths = before.values.data();
-        m_runner.run(in, sweepPieces(in, layer), sums, job.part(1, 2));
+        std::vector<SweepPiece> pieces;
+        if (rays.wanted.rays() > 0) pieces = sweepPieces(in, layer);
+        std::vector<std::vector<double>> ofPieces(pieces.size());
+        const auto run = [&](std::span<const std::size_t> which, const JobControl& part) {
+            m_runner.runSome(in, pieces, which, sums.size(), ofPieces, part);
+        };
+        // What no other block has a say in is measured while those are waited for.
+        std::vector<std::size_t> left;
+        for (std::size_t i = 0; i < pieces.size(); ++i) left.push_back(i);
+        const auto unbound = std::ranges::stable_partition(left, [&](std::size_t i) {
+            return std::ranges::any_of(rays.entering, [&](const SweepRect& entering) {
+                return pieces[i].firstRow < entering.endRow && pieces[i].lastRow >= entering.firstRow;
+            });
+        });
+        std::size_t free = unbound.size();
+        m_ranks.await([&] {
+            const std::size_t some = std::min(free, static_cast<std::size_t>(threadCount()));
+            run(std::span(left).last(some), {job.stop, {}});
+            left.resize(left.size() - some);
+            free -= some;
+            return some > 0;
+        });
+        findDepthsBefore(m_ranks, order, rays.all, std::move(carried), before);
+        run(left, job.part(1, 2));
+        addUp(ofPieces, sums);
     }
 
-    /// Rays that nobody has handed over come from outside the volume, or never come here.
+    /// What rays have met that nobody hands over: they come from outside the volume, or never come here.
     static void begin(const SweepInput& in, const SweepLayer& layer, RayDepths& depths) {
         for (int row = depths.rect.firstRow; row < depths.rect.endRow; ++row)
             for (int col = depths.rect.firstCol; col < depths.rect.endCol; ++col) {
+                if (passes(in, layer, col, row, in.reach)) continue; // 0
                 float* ray = depths.values.data() + depths.rect.at(col, row, depths.lanes);
-                if (ray[0] >= 0) continue;
-                const float depth = passes(in, layer, col, row, in.reach) ? 0 : kUnknownDepth;
-                for (int lane = 0; lane < depths.lanes; ++lane) ray[lane] = depth;
+                std::fill_n(ray, depths.lanes, kUnknownDepth);
             }
     }
 

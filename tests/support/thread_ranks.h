@@ -53,6 +53,12 @@ public:
     int rank() const override { return m_rank; }
     int size() const override { return m_size; }
 
+    /// Ranks of odd numbers do all of the work, the others none.
+    void await(const Work& meanwhile) override {
+        while (m_rank % 2 == 1 && meanwhile()) {
+        }
+        m_point.meet();
+    }
     std::vector<RankMessage> exchange(std::vector<RankMessage> messages) override {
         ++m_traffic.rounds;
         {

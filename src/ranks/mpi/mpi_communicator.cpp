@@ -33,16 +33,19 @@ void require(int code, const char* doing) {
 
 /// Waits for what has been begun. MPI's own calls ask without a pause, and take the processor from ranks that have
 /// something to do; here it is asked every so often, once the answer is not at hand.
-void finish(std::span<MPI_Request> requests, const char* doing) {
+void finish(std::span<MPI_Request> requests, const char* doing, const Communicator::Work& meanwhile = {}) {
     constexpr std::chrono::microseconds kAtHand{50}, kPause{50};
     const auto begin = std::chrono::steady_clock::now();
     for (int done = 0;;) {
         require(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE), doing);
         if (done != 0) return;
+        if (meanwhile && meanwhile()) continue;
         if (std::chrono::steady_clock::now() - begin > kAtHand) std::this_thread::sleep_for(kPause);
     }
 }
-void finish(MPI_Request request, const char* doing) { finish({&request, 1}, doing); }
+void finish(MPI_Request request, const char* doing, const Communicator::Work& meanwhile = {}) {
+    finish({&request, 1}, doing, meanwhile);
+}
 
 /// Of the program that runs, so that ranks with different ones find out.
 std::uint64_t programHash() {
@@ -125,7 +128,7 @@ void MpiRanks::requireSameProgram() {
             throw Error("the ranks run different programs", "mpirun", "give all of them the same pellucid-mpi");
 }
 
-void MpiRanks::requireAll() {
+void MpiRanks::requireAll(const Work& meanwhile) {
     // Calls of two threads would meet those of others in any order.
     int isMain = 0;
     MPI_Is_thread_main(&isMain);
@@ -135,7 +138,7 @@ void MpiRanks::requireAll() {
     int well = 1, all = 0;
     MPI_Request request = MPI_REQUEST_NULL;
     require(MPI_Iallreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm, &request), "reach all ranks");
-    finish(request, "reach all ranks");
+    finish(request, "reach all ranks", meanwhile);
     if (all == 1) return;
     m_lost = true;
     throw RankLost();
@@ -171,6 +174,20 @@ MpiRanks::Ending MpiRanks::leave(const Ending& mine) {
     MPI_Bcast(result.message.data(), static_cast<int>(result.message.size()), MPI_CHAR, from, m_group->comm);
     if (!allSay && m_size > 1) result.message = "rank " + std::to_string(from) + ": " + result.message;
     return result;
+}
+
+void MpiRanks::await(const Work& meanwhile) {
+    std::exception_ptr fault;
+    requireAll([&] {
+        if (fault) return false;
+        try {
+            return meanwhile();
+        } catch (...) { // the others have been told that this rank comes
+            fault = std::current_exception();
+            return false;
+        }
+    });
+    if (fault) std::rethrow_exception(fault);
 }
 
 std::vector<RankMessage> MpiRanks::exchange(std::vector<RankMessage> messages) {

@@ -22,6 +22,7 @@ public:
 
     int rank() const override { return m_rank; }
     int size() const override { return m_size; }
+    void await(const Work& meanwhile) override;
     std::vector<RankMessage> exchange(std::vector<RankMessage> messages) override;
     void sum(std::span<double> values) override;
     std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) override;
@@ -44,7 +45,7 @@ public:
 private:
     struct Group;
     void findPlace();
-    void requireAll();
+    void requireAll(const Work& meanwhile = {});
 
     std::unique_ptr<Group> m_group;
     int m_rank = 0, m_size = 1;

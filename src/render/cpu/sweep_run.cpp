@@ -11,21 +11,34 @@ namespace pellucid {
 
 void SweepRunner::run(const SweepInput& in, const std::vector<SweepPiece>& pieces, std::vector<double>& sums,
                       const JobControl& job) {
-    std::vector<std::vector<double>> partial(pieces.size());
-    std::atomic<std::size_t> done = 0;
     const bool shared = m_share.complete && in.field == nullptr; // a field is made by all
-    parallelFor(pieces.size(), [&](std::size_t i) {
+    std::vector<std::size_t> mine;
+    for (std::size_t i = shared ? m_share.part : 0; i < pieces.size(); i += shared ? m_share.parts : 1)
+        mine.push_back(i);
+    std::vector<std::vector<double>> ofPieces(pieces.size());
+    runSome(in, pieces, mine, sums.size(), ofPieces, job);
+    if (shared && !pieces.empty()) m_share.complete(ofPieces, sums.size());
+    addUp(ofPieces, sums);
+}
+
+void SweepRunner::runSome(const SweepInput& in, const std::vector<SweepPiece>& pieces,
+                          std::span<const std::size_t> which, std::size_t size,
+                          std::vector<std::vector<double>>& ofPieces, const JobControl& job) {
+    std::atomic<std::size_t> done = 0;
+    parallelFor(which.size(), [&](std::size_t n) {
         job.throwIfStopped();
-        if (shared && i % m_share.parts != m_share.part) return;
-        partial[i].assign(sums.size(), 0.0);
+        std::vector<double>& sums = ofPieces[which[n]];
+        sums.assign(size, 0.0);
         const auto scratch = borrowScratch();
-        m_kernel(in, pieces[i], *scratch, partial[i].data());
+        m_kernel(in, pieces[which[n]], *scratch, sums.data());
         returnScratch(scratch);
-        job.report(static_cast<double>(++done) / static_cast<double>(pieces.size()));
+        job.report(static_cast<double>(++done) / static_cast<double>(which.size()));
     });
-    if (shared && !pieces.empty()) m_share.complete(partial, sums.size());
-    for (const auto& part : partial)
-        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += part[i];
+}
+
+void addUp(const std::vector<std::vector<double>>& ofPieces, std::vector<double>& sums) {
+    for (const auto& piece : ofPieces)
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += piece[i];
 }
 
 std::shared_ptr<SweepScratch> SweepRunner::borrowScratch() {

@@ -21,6 +21,9 @@ struct PieceShare {
     std::function<void(std::vector<std::vector<double>>&, std::size_t size)> complete;
 };
 
+/// Adds the sums of all pieces to `sums`, in their order.
+void addUp(const std::vector<std::vector<double>>& ofPieces, std::vector<double>& sums);
+
 /// Keeps the memory that pieces are worked on in.
 class SweepRunner {
 public:
@@ -29,6 +32,9 @@ public:
     /// Adds the sums of all pieces to `sums` in their order, whatever thread made them. Throws Cancelled.
     void run(const SweepInput& in, const std::vector<SweepPiece>& pieces, std::vector<double>& sums,
              const JobControl& job = {});
+    /// Likewise a few at a time, `which` of them: the sums of each, `size`, go to its place in `ofPieces`.
+    void runSome(const SweepInput& in, const std::vector<SweepPiece>& pieces, std::span<const std::size_t> which,
+                 std::size_t size, std::vector<std::vector<double>>& ofPieces, const JobControl& job = {});
 
 private:
     std::shared_ptr<SweepScratch> borrowScratch();

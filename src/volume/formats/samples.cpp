@@ -455,12 +455,16 @@ bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
            isGapless(selection) && (layout.start + selection.first * bytes) % bytes == 0;
 }
 
-/// The samples as they lie in a large file; empty where that cannot be.
+/// The samples of whole layers as they lie in a large file; empty where that cannot be.
 template <class T>
-std::optional<Samples> mapped(const FileLayout& layout, const Selection& selection, const JobControl& job) {
-    const std::uint64_t bytes = voxelCount(selection.dims) * sizeof(T);
-    if (bytes < kMapBytes || !isAsInMemory(layout, selection)) return {};
-    auto file = MappedFile::map(layout.dataPath, layout.start + selection.first * sizeof(T), bytes);
+std::optional<Samples> mapped(const FileLayout& layout, const Selection& selection, const ExcerptPlan& plan,
+                              const JobControl& job) {
+    const VoxelRegion& region = plan.region;
+    const std::uint64_t bytes = voxelCount(plan.dims) * sizeof(T),
+                        first = selection.first + static_cast<std::uint64_t>(region.lo.z) * selection.stride[2];
+    const bool ofLayers = plan.dims == Int3(selection.dims.x, selection.dims.y, region.hi.z - region.lo.z);
+    if (bytes < kMapBytes || !ofLayers || !isAsInMemory(layout, selection)) return {};
+    auto file = MappedFile::map(layout.dataPath, layout.start + first * sizeof(T), bytes);
     if (!file) return {};
     // Looked at once from end to end, so that a slow disk can be waited for, or not.
     constexpr std::size_t kPage = 4096;
@@ -478,8 +482,7 @@ template <class T, class Kept>
 Collected readAs(const FileLayout& layout, const Selection& selection, const ExcerptPlan& plan,
                  const VolumeSource& source, const JobControl& job) {
     if constexpr (std::is_same_v<T, Kept>)
-        if (plan.isWhole())
-            if (auto samples = mapped<T>(layout, selection, job)) return {std::move(*samples), {0, -1}};
+        if (auto samples = mapped<T>(layout, selection, plan, job)) return {std::move(*samples), {0, -1}};
     if (plan.isWhole()) { // it was not planned for memory where it was to be mapped
         const std::uint64_t bytes = voxelCount(plan.dims) * sizeof(Kept);
         requireMemory(source.then, source.path, plan.dims, sampleTypeOf<Kept>(), bytes, bytes);
