@@ -101,7 +101,7 @@ Json jsonFromVolume(const Volume& volume) {
 std::string jsonText(const Json& json) {
     requireFinite(json, "");
     // A file name need not be UTF-8; JSON must be.
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return printableJson(json.dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 void writeAnswer(const std::string& text) {
@@ -112,9 +112,7 @@ void writeAnswer(const std::string& text) {
 }
 
 std::string oneLine(const std::string& text) {
-    std::string line = text;
-    for (char& c : line)
-        if (const auto u = static_cast<unsigned char>(c); u < 0x20 || u == 0x7F) c = ' ';
+    std::string line = printable(text);
     line.erase(line.find_last_not_of(' ') + 1);
     return line;
 }

@@ -172,7 +172,7 @@ Outcome runCommand(const Program& info, const CLI::App& program, const Command& 
         Answer answer = command.run(progress);
         progress.finish();
         if (interruptStatus() != 0) return {stoppedStatus(), {}, {}, {}};
-        Outcome outcome{0, common.json ? jsonText(answer.json) : answer.text, {}, {}};
+        Outcome outcome{0, common.json ? jsonText(answer.json) : printableLines(answer.text), {}, {}};
         if (answer.failure) {
             outcome.status = 1;
             outcome.error = lineOf(*answer.failure);

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/text.h"
+
 namespace pellucid {
 
 /// What would help, where that is a setting of the program: the command line names its option, the window its control.
@@ -18,13 +20,13 @@ enum class Remedy {
 };
 
 /// An error of the outside world: what went wrong, where, and what to do about it. `main` alone (or the window's
-/// dialog) catches it. Each part is one line without a full stop; `where` and `whatToDo` may be empty. Control
-/// characters, which file names and damaged headers bring along, become blanks.
+/// dialog) catches it. Each part is one line without a full stop; `where` and `whatToDo` may be empty. What file
+/// names and damaged headers bring along is made printable().
 class Error : public std::runtime_error {
 public:
     Error(std::string what, std::string where, std::string whatToDo, Remedy remedy = Remedy::AsSaid)
-        : std::runtime_error(oneLine(join(what, where, whatToDo))), m_what(oneLine(std::move(what))),
-          m_where(oneLine(std::move(where))), m_whatToDo(oneLine(std::move(whatToDo))), m_remedy(remedy) {}
+        : std::runtime_error(printable(join(what, where, whatToDo))), m_what(printable(what)),
+          m_where(printable(where)), m_whatToDo(printable(whatToDo)), m_remedy(remedy) {}
 
     const std::string& problem() const noexcept { return m_what; }
     const std::string& where() const noexcept { return m_where; }
@@ -38,11 +40,6 @@ private:
         if (!b.empty()) line += ", " + b;
         if (!c.empty()) line += ", " + c;
         return line;
-    }
-    static std::string oneLine(std::string text) {
-        for (char& c : text)
-            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-        return text;
     }
     std::string m_what, m_where, m_whatToDo;
     Remedy m_remedy = Remedy::AsSaid;

@@ -21,6 +21,94 @@ std::string describeBytes(std::uint64_t bytes) {
     return std::string(text) + " " + kUnits[unit];
 }
 
+namespace {
+
+/// The character that a text begins with.
+struct Character {
+    std::size_t bytes = 1;
+    std::uint32_t code = 0;
+    bool isValid = false; ///< else a byte that is no UTF-8
+};
+
+Character firstOf(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::uint32_t head = byte(0);
+    if (head < 0x80) return {1, head, true};
+    const std::size_t bytes = head >= 0xf0 ? 4 : head >= 0xe0 ? 3 : 2;
+    if (head < 0xc2 || head > 0xf4 || text.size() < bytes) return {};
+    std::uint32_t code = head & (0x7fu >> bytes);
+    for (std::size_t i = 1; i < bytes; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return {};
+        code = code << 6 | (byte(i) & 0x3fu);
+    }
+    constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000}; // shorter forms say the same
+    const bool isSurrogate = code >= 0xd800 && code < 0xe000;
+    if (code < kLeast[bytes] || code > 0x10ffff || isSurrogate) return {};
+    return {bytes, code, true};
+}
+
+/// Of the C0 and C1 sets, or ends a line.
+bool isControl(std::uint32_t code) {
+    return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x2028 || code == 0x2029;
+}
+/// Marks, embeddings, overrides and isolates of the bidirectional algorithm.
+bool turnsDirection(std::uint32_t code) {
+    return code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) ||
+           (code >= 0x2066 && code <= 0x2069);
+}
+
+/// Calls keep(bytes) for what can be shown, change(character) for the rest.
+template <class Keep, class Change>
+void forEachCharacter(std::string_view text, const Keep& keep, const Change& change) {
+    while (!text.empty()) {
+        const Character c = firstOf(text);
+        if (c.isValid && !isControl(c.code) && !turnsDirection(c.code))
+            keep(text.substr(0, c.bytes));
+        else
+            change(c);
+        text.remove_prefix(c.bytes);
+    }
+}
+
+std::string shown(std::string_view text, bool keepsLines) {
+    std::string result;
+    result.reserve(text.size());
+    forEachCharacter(
+        text, [&](std::string_view bytes) { result += bytes; },
+        [&](const Character& c) {
+            const bool isOfLines = c.isValid && (c.code == '\n' || c.code == '\t');
+            if (keepsLines && isOfLines)
+                result += static_cast<char>(c.code);
+            else
+                result += c.isValid && isControl(c.code) ? " " : "\uFFFD";
+        });
+    return result;
+}
+
+} // namespace
+
+std::string printable(std::string_view text) { return shown(text, false); }
+std::string printableLines(std::string_view text) { return shown(text, true); }
+
+std::string printableJson(std::string_view json) {
+    std::string result;
+    result.reserve(json.size());
+    forEachCharacter(
+        json, [&](std::string_view bytes) { result += bytes; },
+        [&](const Character& c) {
+            if (!c.isValid) {
+                result += "\uFFFD";
+            } else if (c.code < 0x20) { // between values; in texts they are escaped already
+                result += static_cast<char>(c.code);
+            } else {
+                char escaped[8];
+                std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(c.code));
+                result += escaped;
+            }
+        });
+    return result;
+}
+
 std::string inQuotes(std::string_view text) {
     constexpr std::size_t kMost = 40;
     std::string quote("'");

@@ -231,6 +231,13 @@ public:
         }
     }
 
+    /// The same of voxels that lie beside each other, straight to `to`.
+    void readTo(T* to, std::uint64_t start, std::uint64_t length) {
+        m_values.skip(start - m_at);
+        m_values.read(reinterpret_cast<char*>(to), static_cast<std::size_t>(length));
+        m_at = start + length;
+    }
+
 private:
     static constexpr std::uint64_t kPieceBytes = 4u << 20;
     Values& m_values;
@@ -310,12 +317,20 @@ std::unique_ptr<Values> openValues(const StoredValues& stored, const JobControl&
     return std::make_unique<BinaryValues<T>>(stored, job);
 }
 
+/// Whether the voxels lie one behind the other.
+bool isGapless(const Selection& selection) {
+    const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
+    return selection.stride[0] == 1 && selection.stride[1] == nx && selection.stride[2] == nx * ny;
+}
+
 /// Rows of a volume, which are asked for in the order of the file.
 template <class T>
 class Rows {
 public:
     virtual ~Rows() = default;
-    /// The values of `count` voxels along x, from `first` on.
+    /// Whether each row is followed by the next one, so that several can be read at once.
+    virtual bool areGapless() const { return false; }
+    /// The values of `count` voxels along x, from `first` on; of whole rows, more than one where areGapless().
     virtual void read(const Int3& first, int count, T* to) = 0;
 };
 
@@ -328,13 +343,13 @@ public:
         const auto& stride = m_selection.stride;
         std::uint64_t start = m_selection.first;
         for (int a = 0; a < 3; ++a) start += static_cast<std::uint64_t>(first[a]) * stride[static_cast<std::size_t>(a)];
-        m_reader.readLine(start, static_cast<std::uint64_t>(count), [&](const T* piece, std::uint64_t voxels) {
-            if (stride[0] == 1)
-                to = std::copy_n(piece, voxels, to);
-            else
-                for (std::uint64_t v = 0; v < voxels; ++v) *to++ = piece[v * stride[0]];
+        const auto length = static_cast<std::uint64_t>(count);
+        if (stride[0] == 1) return m_reader.readTo(to, start, length);
+        m_reader.readLine(start, length, [&](const T* piece, std::uint64_t voxels) {
+            for (std::uint64_t v = 0; v < voxels; ++v) *to++ = piece[v * stride[0]];
         });
     }
+    bool areGapless() const override { return isGapless(m_selection); }
 
 private:
     std::unique_ptr<Values> m_values;
@@ -419,32 +434,30 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
     const Int3 lo = plan.region.lo, size = plan.region.hi - lo;
     // Padded, so that codes of 8 bits need no copy.
     std::vector<Kept> kept(voxelCount(plan.dims) + SampleArray<Kept>::kPadding), row(static_cast<std::size_t>(size.x));
-    std::vector<T> values(row.size());
     const bool asItIs = plan.factors == Int3(1);
     const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
+    constexpr int kVoxelsAtOnce = 1 << 20;
+    const bool several = asItIs && size.x == plan.excerpt.fullDims.x && rows.areGapless();
+    const int rowsAtOnce = several ? std::clamp(kVoxelsAtOnce / size.x, 1, size.y) : 1;
+    std::vector<T> values(row.size() * static_cast<std::size_t>(rowsAtOnce));
     LayerMeans<Kept> means({size.x, size.y}, plan.factors, missing);
     ReadProgress progress(job, voxelCount(size));
     for (int k = 0; k < size.z; ++k) {
-        for (int j = 0; j < size.y; ++j) {
-            rows.read(lo + Int3(0, j, k), size.x, values.data());
+        for (int j = 0; j < size.y; j += rowsAtOnce) {
+            const std::size_t count = row.size() * static_cast<std::size_t>(std::min(rowsAtOnce, size.y - j));
+            rows.read(lo + Int3(0, j, k), static_cast<int>(count), values.data());
             Kept* const to =
-                asItIs ? kept.data() + layer * static_cast<std::size_t>(k) + values.size() * static_cast<std::size_t>(j)
+                asItIs ? kept.data() + layer * static_cast<std::size_t>(k) + row.size() * static_cast<std::size_t>(j)
                        : row.data();
-            std::ranges::transform(values, to, convert);
+            std::transform(values.data(), values.data() + count, to, convert);
             if (!asItIs) means.add(row.data(), j);
-            progress.add(values.size());
+            progress.add(count);
         }
         if (asItIs) continue;
         if (k % plan.factors.z == plan.factors.z - 1 || k == size.z - 1)
             means.takeTo(kept.data() + layer * static_cast<std::size_t>(k / plan.factors.z));
     }
     return {SampleArray<Kept>(std::move(kept), voxelCount(plan.dims)), asItIs ? ValueRange{0, -1} : means.range()};
-}
-
-/// Whether the voxels lie one behind the other.
-bool isGapless(const Selection& selection) {
-    const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
-    return selection.stride[0] == 1 && selection.stride[1] == nx && selection.stride[2] == nx * ny;
 }
 
 /// Where the samples can be used as they lie in the file: raw, in this machine's byte order, one after the other.

@@ -50,8 +50,9 @@ Header readHeader(ByteSource& from, const VtkData& data, std::uint64_t stored) {
     }
     constexpr std::uint64_t kMost = std::uint64_t{1} << 62;
     const std::uint64_t count = number(), size = number(), last = number();
+    // Each block but the last has a size, and all together are no more than is wanted: no table is longer than that.
     if (count > stored / static_cast<std::uint64_t>(data.headerBytes) || (count > 0 && size > kMost / count) ||
-        last > size)
+        last > size || (count > 1 && (size == 0 || count - 1 > data.bytes / size)))
         throw fail("the header of the compressed array makes no sense");
     std::uint64_t packed = 0;
     header.blocks.reserve(static_cast<std::size_t>(count));
@@ -203,8 +204,8 @@ bool ZlibBlocks::skip(std::uint64_t count) {
     return count == 0;
 }
 
-std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job) {
-    const std::uint64_t stored = storedFrom(data);
+std::uint64_t requireVtkBytes(const VtkData& data, const JobControl& job) {
+    const std::uint64_t bytes = data.bytes, stored = storedFrom(data);
     auto from = encodedBytes(data, job);
     const Header header = readHeader(*from, data, stored);
     if (header.bytes != bytes)

@@ -59,12 +59,13 @@ struct VtkData {
     std::string path;
     std::uint64_t start = 0; ///< byte of the file
     bool base64 = false, compressed = false, bigEndian = false;
-    int headerBytes = 4; ///< of a number in the header: 4 or 8
+    int headerBytes = 4;     ///< of a number in the header: 4 or 8
+    std::uint64_t bytes = 0; ///< that the array needs, unpacked
 };
 
-/// Throws FileError unless the header announces `bytes` bytes and the file holds them. Returns where the data begin
-/// that are neither base64 nor compressed.
-std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job);
+/// Throws FileError unless the header announces data.bytes and the file holds them. Returns where the data begin that
+/// are neither base64 nor compressed.
+std::uint64_t requireVtkBytes(const VtkData& data, const JobControl& job);
 
 /// The bytes behind the header. The caller has looked at it by requireVtkBytes(). `job` must outlive it.
 std::unique_ptr<ByteSource> openVtkData(const VtkData& data, const JobControl& job);

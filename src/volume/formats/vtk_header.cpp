@@ -34,7 +34,8 @@ VtkExtent extentIn(const std::string& text, const std::string& path) {
     const std::vector<std::string> words = splitWords(text);
     for (std::size_t i = 0; i < 6; ++i) {
         std::int64_t value = 0;
-        if (words.size() != 6 || !parseNumber(words[i], value) || std::abs(value) > (std::int64_t{1} << 31))
+        constexpr std::int64_t kMost = std::int64_t{1} << 31;
+        if (words.size() != 6 || !parseNumber(words[i], value) || value < -kMost || value > kMost)
             failInVtk(path, "the extent " + inQuotes(text) + " is not six whole numbers");
         const int axis = static_cast<int>(i / 2);
         (i % 2 == 0 ? extent.lo : extent.hi)[axis] = value + static_cast<std::int64_t>(i % 2);

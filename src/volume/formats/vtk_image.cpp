@@ -56,7 +56,7 @@ StoredValues dataOf(const VtkImage& file, const VtkArray& array, std::uint64_t v
         requireNumbers(path, stored.start, values, job);
         return stored;
     }
-    VtkData data{path, array.contentStart, true, file.compressed, file.bigEndian, file.headerBytes};
+    VtkData data{path, array.contentStart, true, file.compressed, file.bigEndian, file.headerBytes, values * bytesPer};
     if (array.format == "appended") {
         if (!file.appendedStart) failInVtk(path, "there are no appended data in the file", "copy it again");
         if (array.offset > (std::uint64_t{1} << 62)) failInVtk(path, "the offset of an array lies beyond any file");
@@ -65,7 +65,7 @@ StoredValues dataOf(const VtkImage& file, const VtkArray& array, std::uint64_t v
     } else if (array.format != "binary") {
         failInVtk(path, "the format " + inQuotes(array.format) + " of the array is not known");
     }
-    stored.start = requireVtkBytes(data, values * bytesPer, job);
+    stored.start = requireVtkBytes(data, job);
     if (data.base64 || data.compressed)
         stored.open = [data](const JobControl& control) { return openVtkData(data, control); };
     return stored;

@@ -38,7 +38,9 @@ std::string withoutEntities(const std::string& text) {
         {"amp", "&"}, {"lt", "<"}, {"gt", ">"}, {"quot", "\""}, {"apos", "'"}};
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        const std::size_t end = text[i] == '&' ? text.find(';', i) : std::string::npos;
+        constexpr std::size_t kLongest = 10; // "&#x10ffff;"
+        const std::size_t end =
+            text[i] == '&' ? std::string_view(text).substr(0, i + kLongest).find(';', i) : std::string::npos;
         const std::string entity = end == std::string::npos ? "" : text.substr(i + 1, end - i - 1);
         const auto named = kNamed.find(entity);
         const std::string character = named != kNamed.end() ? named->second : ofNumber(entity);
