@@ -132,6 +132,7 @@ TEST_CASE("VTK files that are something else are refused in words", "[vtk][bad-i
     CHECK(changed("UInt8", "UInt8") == "no error");
     CHECK_THAT(changed("type=\"ImageData\"", "type=\"UnstructuredGrid\""), Contains("UnstructuredGrid"));
     CHECK_THAT(changed("PointData", "CellDatum"), Contains("no values for points"));
+    CHECK_THAT(changed("Extent=\"0", "Extent=\"-9223372036854775808"), Contains("not six whole numbers"));
     CHECK_THAT(
         errorOf(sourceOf(folder.write(
             "c.vti",
@@ -221,6 +222,22 @@ TEST_CASE("VTK data that are cut off or damaged are refused before anything is a
         CAPTURE(at, claim);
         CHECK(errorOf(sourceOf(folder.write("a.vti", claims))) != "no error");
     }
+    // More blocks of 10 bytes than 6000 are cut into: refused before there is a table of them.
+    std::string many = good;
+    many.replace(header, 8, number(raw, 700));
+    CHECK_THAT(errorOf(sourceOf(folder.write("a.vti", many))), Contains("makes no sense"));
+}
+
+TEST_CASE("entities of XML have an end nearby, or are none", "[vtk]") {
+    const TempFolder folder;
+    const auto nameOf = [&](const std::string& written) {
+        const std::string attributes = "type=\"UInt8\" Name=\"" + written + "\"";
+        return contentsOf(sourceOf(folder.write("a.vti", vti({}, {{attributes, "1 2 3 4 5 6", "abcdef"}})))).arrays;
+    };
+    CHECK(nameOf("a &amp; b &#x10fffd;") == std::vector<std::string>{"a & b \xf4\x8f\xbf\xbd"});
+    CHECK(nameOf("&amp b; &123456789amp;") == std::vector<std::string>{"&amp b; &123456789amp;"});
+    const std::string flood(60'000, '&');
+    CHECK(nameOf(flood + ";") == std::vector<std::string>{flood + ";"});
 }
 
 TEST_CASE("time of a VTK image", "[vtk]") {
