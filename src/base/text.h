@@ -13,8 +13,9 @@ namespace pellucid {
 /// "512 bytes", "1.50 GB" (powers of 1000).
 std::string describeBytes(std::uint64_t bytes);
 
-/// A text from somewhere else as it can be shown on a line: control characters become blanks; bytes that are no UTF-8 and
-/// characters that turn the direction of writing become U+FFFD. Else a name could steer a terminal, or read as another.
+/// A text from somewhere else as it can be shown on a line: control characters become blanks; bytes that are no UTF-8
+/// and characters that turn the direction of writing become U+FFFD. Else a name could steer a terminal, or read as
+/// another.
 std::string printable(std::string_view text);
 /// The same, with line ends and tabs as they are.
 std::string printableLines(std::string_view text);
