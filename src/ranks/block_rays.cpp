@@ -92,17 +92,16 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
     rays.wanted = raysAroundBox(rays.box);
     if (isEmpty(region)) return rays;
     const SweepRect inside = raysThrough(pass, layer, rays.reach);
-    // What a ray has met here is asked for by those who hand it over later: blocks behind this one that it reaches.
-    for (auto behind = std::ranges::find(order, own); behind != order.end(); ++behind) {
-        const VoxelRegion& other = blocks.blocks()[static_cast<std::size_t>(*behind)];
-        if (*behind == own || isEmpty(other)) continue;
-        rays.through =
-            spanning(rays.through, common(inside, raysThrough(pass, layer, ownReach(boxOf(other, axes, dims), whole))));
-    }
-    for (std::size_t b = 0; b < blocks.blocks().size(); ++b) {
-        if (static_cast<int>(b) == own || isEmpty(blocks.blocks()[b])) continue;
-        const SweepBox box = boxOf(blocks.blocks()[b], axes, dims);
-        if (const auto left = common(rays.around, ownReach(box, whole))) {
+    bool isBehind = false;
+    for (const int b : order) {
+        isBehind = isBehind || b == own;
+        const VoxelRegion& other = blocks.blocks()[static_cast<std::size_t>(b)];
+        if (b == own || isEmpty(other)) continue;
+        const SweepBox box = boxOf(other, axes, dims);
+        const SweepReach theirs = ownReach(box, whole);
+        // What a ray has met here is asked for by those who hand it over later: blocks behind this one that it reaches.
+        if (isBehind) rays.through = spanning(rays.through, common(inside, raysThrough(pass, layer, theirs)));
+        if (const auto left = common(rays.around, theirs)) {
             const SweepRect entering = common(raysThrough(pass, layer, *left), rays.wanted);
             if (entering.rays() > 0) rays.entering.push_back(entering);
         }
@@ -111,7 +110,7 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
         if (!entered) continue;
         const SweepRect entering = common(raysThrough(pass, layer, *entered), raysAroundBox(box));
         if (entering.rays() == 0) continue;
-        rays.entries.push_back({static_cast<int>(b), around, entering});
+        rays.entries.push_back({b, around, entering});
         rays.through = spanning(rays.through, common(inside, entering));
     }
     return rays;

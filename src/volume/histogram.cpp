@@ -49,10 +49,12 @@ Histogram makeHistogram(const Volume& volume, int bins) {
     const auto count = [&]<class T>(const SampleArray<T>& values) {
         constexpr bool kFewValues = std::is_integral_v<T> && sizeof(T) <= 2;
         constexpr int kLowest = kFewValues ? static_cast<int>(std::numeric_limits<T>::lowest()) : 0;
-        // So few values are possible that each is counted, and what it counts for is found once.
+        // Where so few values are possible that pieces have more voxels, each value is counted, and what it counts for
+        // is found once.
         std::vector<Place> places;
         if constexpr (kFewValues)
-            for (int v = kLowest; v <= std::numeric_limits<T>::max(); ++v) places.push_back(placeOf(v));
+            if (values.size() >> (8 * sizeof(T)) > kPieces)
+                for (int v = kLowest; v <= std::numeric_limits<T>::max(); ++v) places.push_back(placeOf(v));
         parallelFor(partial.size(), [&](std::size_t p) {
             auto& counts = partial[p];
             counts.assign(static_cast<std::size_t>(bins), 0);
@@ -70,7 +72,7 @@ Histogram makeHistogram(const Volume& volume, int bins) {
                 layers * piece / pieces, layers * (piece + 1) / pieces, [&](const Int3&, std::size_t row, int voxels) {
                     const std::size_t end = row + static_cast<std::size_t>(voxels);
                     for (std::size_t i = row; i < end; ++i) {
-                        if constexpr (kFewValues)
+                        if (kFewValues && !places.empty())
                             ++ofValue[i % 2][static_cast<std::size_t>(static_cast<int>(values[i]) - kLowest)];
                         else
                             add(placeOf(static_cast<double>(values[i])), 1);
