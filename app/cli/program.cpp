@@ -125,6 +125,8 @@ std::string lineOf(const Error& e) {
             return said + "give --spacing SX,SY,SZ";
         case Remedy::NoComponent:
             return "leave out --component";
+        case Remedy::AllowOutside:
+            return said + "give --allow-outside if you trust this file";
         case Remedy::OtherEngine:
             return said + "use --engine cpu";
         case Remedy::AsSaid:

@@ -16,6 +16,7 @@ enum class Remedy {
     CorrectRawLayout, ///< that, or how many bytes to skip
     GiveSpacing,      ///< distances of the voxels
     NoComponent,      ///< ask for no component
+    AllowOutside,     ///< let the headers of this opening name files outside their folders
     OtherEngine       ///< let the CPU do it
 };
 

@@ -39,6 +39,8 @@ QString adviceFor(const Error& error) {
         return QObject::tr("close other programs, or open a smaller volume");
     case Remedy::GiveRawLayout:
         return orElse(QObject::tr("open it with File ▸ Open raw data and say how its bytes are laid out"));
+    case Remedy::AllowOutside:
+        return orElse(QObject::tr("open the file again and allow it, if you trust it"));
     case Remedy::OtherEngine:
         return orElse(QObject::tr("choose the CPU as engine and renderer"));
     default:
