@@ -141,6 +141,18 @@ Json framesJson(const Scene& scene) {
 
 } // namespace
 
+namespace {
+
+/// Of the arrays, each with what is said of it.
+std::vector<std::string> namesOf(const FileContents& contents) {
+    std::vector<std::string> names = contents.arrays;
+    for (std::size_t i = 0; i < std::min(names.size(), contents.details.size()); ++i)
+        names[i] += " (" + contents.details[i] + ")";
+    return names;
+}
+
+} // namespace
+
 Command addInfo(CLI::App& program) {
     CLI::App* app = program.add_subcommand("info", "What a volume holds: size, type, spacing, range, invalid voxels");
     const auto options = std::make_shared<SceneOptions>();
@@ -155,7 +167,8 @@ Command addInfo(CLI::App& program) {
                 Answer answer{textOf(volume), jsonOf(volume), opened.sessionNotices};
                 if (!contents.arrays.empty()) {
                     answer.json["arrays"] = contents.arrays;
-                    answer.text += listing({{"arrays", joined(contents.arrays)}});
+                    if (!contents.details.empty()) answer.json["array_details"] = contents.details;
+                    answer.text += listing({{"arrays", joined(namesOf(contents))}});
                 }
                 const Json definitions = definitionsOf(opened.scene.session);
                 if (!definitions.empty()) answer.json["definitions"] = definitions;

@@ -18,12 +18,20 @@ struct FileContents {
     std::string timeUnit;               ///< "s", "ms", …; empty: not known
     std::vector<std::string> stepFiles; ///< of a collection, the file of each step; empty: they are in this one
     std::vector<std::string> arrays;    ///< by name, in their order; empty: there is one, without a name
+    std::vector<std::string> details;   ///< of each array how large it is; empty where all are of one grid
 };
 
 /// Reads the header of source.path, which is one file; of VTK files with inline data it has to pass over those, too.
 /// A headerless file (source.raw) holds one step, or where source.frames asks for some, as many as its size is a
 /// multiple of. Throws FileError for a header that cannot be read, UsageError for source.array that is not there.
 FileContents contentsOf(const VolumeSource& source, const JobControl& job = {});
+
+/// Whether several volumes may be found under a path, which FileContents::arrays names: DICOM.
+bool mayHoldSeries(const std::string& path);
+
+/// The slice across the middle of a volume, for a picture of what can be opened. Of paths that mayHoldSeries(). Throws
+/// Error as loadVolume() does.
+Volume loadMiddleSlice(const VolumeSource& source, const JobControl& job = {});
 
 /// Whether a reader takes files of this name, whatever is in them.
 bool hasVolumeSuffix(const std::string& path);

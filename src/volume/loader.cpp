@@ -17,17 +17,23 @@ namespace {
 constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
-    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(),
-                                                    vtiFormat(),  pvtiFormat(),      pvdFormat()};
+    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
+                                                    pvtiFormat(), pvdFormat(),       dicomFormat()};
     return kFormats;
 }
 
-/// Null where there is none for this suffix.
+bool isFolder(const std::string& path) {
+    std::error_code ec;
+    return std::filesystem::is_directory(path, ec);
+}
+
+/// Null where neither suffix nor content tells one. A folder that is one volume is DICOM.
 const VolumeFormat* findFormat(const std::string& path) {
     const std::string lower = lowerCase(std::filesystem::path(path).filename().string());
     for (const VolumeFormat& format : formats())
         for (const std::string& suffix : format.suffixes)
             if (lower.size() > suffix.size() && lower.ends_with(suffix)) return &format;
+    if (isFolder(path) || isDicom(path)) return &formats().back();
     return nullptr;
 }
 
@@ -42,6 +48,7 @@ const VolumeFormat& formatOf(const std::string& path) {
 }
 
 void requireNotEmpty(const std::string& path) {
+    if (isFolder(path) && holdsDicom(path)) return;
     if (readableFileBytes(path) == 0) throw FileError("the file is empty", path, "copy it again");
 }
 
@@ -50,7 +57,8 @@ Volume readFile(const VolumeSource& source, const JobControl& job) {
     const VolumeFormat* format = source.raw ? nullptr : &formatOf(source.path);
     Volume volume = format != nullptr ? format->read(source, job) : readRaw(source, job);
     if (volume.format.empty()) volume.format = format != nullptr ? format->name : "raw";
-    volume.title = std::filesystem::path(source.path).filename().string();
+    const std::filesystem::path path(source.path);
+    volume.title = printable((path.has_filename() ? path : path.parent_path()).filename().string());
     return volume;
 }
 
@@ -161,7 +169,14 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job) {
     return formatOf(source.path).describe(source, job);
 }
 
-bool hasVolumeSuffix(const std::string& path) { return findFormat(path) != nullptr; }
+bool mayHoldSeries(const std::string& path) { return isFolder(path) ? holdsDicom(path) : isDicom(path); }
+
+Volume loadMiddleSlice(const VolumeSource& source, const JobControl& job) {
+    PELLUCID_CHECK(mayHoldSeries(source.path));
+    return readMiddleOfDicom(source, job);
+}
+
+bool hasVolumeSuffix(const std::string& path) { return !isFolder(path) && findFormat(path) != nullptr; }
 
 bool mayBeHeaderless(const std::string& path) {
     std::error_code ec;

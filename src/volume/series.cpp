@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "volume/file_contents.h"
 #include "volume/file_names.h"
-#include "volume/formats/file_check.h"
+#include "volume/formats/reader.h"
 #include "volume/procedural.h"
 
 namespace pellucid {
@@ -152,6 +152,8 @@ FileList listFiles(const VolumeSource& source) {
     list.title = fileName(path);
     if (!source.more.empty()) {
         list.paths = {path};
+        if (!source.raw && isDicom(path) && isDicom(source.more.front()))
+            return list; // slices: the first stands for all
         list.paths.insert(list.paths.end(), source.more.begin(), source.more.end());
         list.title += " and " + std::to_string(source.more.size()) + " more";
         return list;
@@ -167,11 +169,19 @@ FileList listFiles(const VolumeSource& source) {
         if (list.title.empty() || list.title == "." || list.title == "..")
             list.title = fs::weakly_canonical(path, ec).filename().string();
         if (list.title.empty()) list.title = fs::weakly_canonical(path, ec).parent_path().filename().string();
+        if (!source.raw && holdsDicom(path)) { // its files are slices
+            list.paths = {path};
+            return list;
+        }
         list.paths = filesIn(path);
     } else {
         list.paths = pattern ? filesNumbered(*pattern) : filesMatching(path);
     }
     const std::vector<std::string> all = list.paths;
+    if (!isFolder && !source.raw && all.size() > 1 && std::ranges::all_of(all, isDicom)) {
+        list.paths = {*std::ranges::min_element(all, countsBefore)}; // which stands for its series
+        return list;
+    }
     if (!pattern) list.paths = ofOneSuffix(std::move(list.paths), source.raw.has_value(), list.notices);
     if (list.paths.empty()) {
         for (const std::string& file : all)

@@ -328,7 +328,7 @@ TEST_CASE("a file of a format that cannot be read yet is told what it is, and as
     OpenWindow w;
     const QTemporaryDir folder;
     const QString path = folder.filePath("slice_4x4x4_uint8.data"); // whatever its name promises
-    std::ofstream(path.toStdString(), std::ios::binary) << std::string(128, '\0') + "DICM" + std::string(60, 'z');
+    std::ofstream(path.toStdString(), std::ios::binary) << std::string("II*\0", 4) + std::string(60, 'z');
     QStringList asked;
     whenAsked([&](QDialog& dialog) {
         asked << dialog.objectName();
@@ -340,7 +340,7 @@ TEST_CASE("a file of a format that cannot be read yet is told what it is, and as
     REQUIRE(waitFor([&] { return !asked.isEmpty(); }));
     REQUIRE(asked.size() == 3);
     CHECK(asked[0] == "errorDialog");
-    CHECK(asked[1].contains("DICOM"));
+    CHECK(asked[1].contains("TIFF"));
     CHECK(asked[2].contains("convert", Qt::CaseInsensitive));
     CHECK_FALSE(asked[2].contains("raw data"));
     w.settle();

@@ -7,12 +7,14 @@
 #include <QAction>
 #include <QComboBox>
 #include <QDialog>
+#include <QDialogButtonBox>
 #include <QDir>
 #include <QDragEnterEvent>
 #include <QDropEvent>
 #include <QFileDialog>
 #include <QLabel>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QMenu>
 #include <QMimeData>
 #include <QPushButton>
@@ -24,6 +26,7 @@
 
 #include "dialogs/raw_dialog.h"
 #include "dialogs/series_files.h"
+#include "support/dicom_writer.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -241,4 +244,83 @@ TEST_CASE("what cannot be opened together is told", "[series]") {
     CHECK(said.contains("session must be opened by itself"));
     CHECK(w.services().store().session() == session);
     CHECK(w.picture() == before);
+}
+
+namespace {
+
+/// Slices of a bright block in two series: "head" of `slices`, and "thin" of 6.
+void writeStudy(const QTemporaryDir& folder, int slices) {
+    for (const bool isThin : {false, true})
+        for (int n = 0; n < (isThin ? 6 : slices); ++n) {
+            test::DicomSlice slice;
+            slice.columns = slice.rows = kSide;
+            slice.number = n + 1;
+            slice.position = "0\\0\\" + std::to_string(n);
+            slice.spacing = "1\\1";
+            slice.description = isThin ? "thin" : "head";
+            slice.series = isThin ? "1.2.9" : "1.2.3";
+            slice.seriesNumber = isThin ? "7" : "1";
+            std::vector<int> values;
+            for (int y = 0; y < kSide; ++y)
+                for (int x = 0; x < kSide; ++x) values.push_back(x > 2 && x < 8 && y > 3 && y < 9 ? 900 + 10 * n : 20);
+            slice.pixels = test::words(values);
+            const QString name = QStringLiteral("%1%2").arg(isThin ? "b" : "a").arg(n);
+            std::ofstream(folder.filePath(name).toStdString(), std::ios::binary) << test::dicomFile(slice);
+        }
+}
+
+} // namespace
+
+TEST_CASE("of several DICOM series in a dropped folder one is chosen by its picture", "[series]") {
+    const QTemporaryDir folder;
+    writeStudy(folder, 10);
+    OpenWindow w;
+    QStringList offered;
+    answer("seriesChoiceDialog", [&](QDialog& dialog) {
+        auto& list = *dialog.findChild<QListWidget*>("seriesList");
+        for (int i = 0; i < list.count(); ++i) offered << list.item(i)->text();
+        const QImage empty = list.item(1)->icon().pixmap(96).toImage();
+        CHECK(waitFor([&] { return list.item(1)->icon().pixmap(96).toImage() != empty; }));
+        list.setCurrentRow(1);
+        QTest::mouseClick(dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open), Qt::LeftButton);
+    });
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    drop(w.window, {folder.path()});
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.settle();
+    REQUIRE(offered.size() == 2);
+    CHECK(offered[0] == "1: head\n12 × 12 pixels, 10 pictures");
+    CHECK(offered[1] == "7: thin\n12 × 12 pixels, 6 pictures");
+    const Scene& scene = w.services().scene();
+    CHECK(scene.volume->dims() == Int3(kSide, kSide, 6));
+    CHECK(scene.session.variable().source.array == "7: thin");
+}
+
+TEST_CASE("nothing is opened where no DICOM series is chosen, and a broken slice is named", "[series]") {
+    const QTemporaryDir folder;
+    writeStudy(folder, 8);
+    OpenWindow w;
+    const Session session = w.services().store().session();
+    bool asked = false;
+    answer("seriesChoiceDialog", [&](QDialog& dialog) {
+        asked = true;
+        dialog.reject();
+    });
+    w.opening().openPath(folder.path());
+    REQUIRE(waitFor([&] { return asked && !w.opening().isBusy(); }));
+    CHECK(w.services().store().session() == session);
+
+    const QString slice = folder.filePath("a3");
+    REQUIRE(QFile::resize(slice, QFileInfo(slice).size() - 20));
+    QString said;
+    answer("seriesChoiceDialog", [&](QDialog& dialog) { dialog.accept(); });
+    answer("errorDialog", [&](QDialog& dialog) {
+        for (const QLabel* label : dialog.findChildren<QLabel*>()) said += label->text() + "\n";
+        dialog.reject();
+    });
+    w.opening().openPath(folder.path());
+    REQUIRE(waitFor([&] { return !said.isEmpty(); }));
+    CHECK(said.contains("a3"));
+    CHECK(said.contains("268 of 288 bytes"));
+    CHECK(w.services().store().session() == session);
 }

@@ -19,6 +19,8 @@ namespace {
 const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/base", {}},
     {"src/volume", {"base"}},
+    {"src/foreign", {"base", "volume"}},
+    {"app/reader", {"base", "volume", "foreign", "reader"}},
     {"src/tf", {"base", "volume"}},
     {"src/saliency", {"base", "volume", "tf"}},
     {"src/render", {"base", "volume", "tf", "saliency"}},
@@ -44,9 +46,9 @@ const std::map<std::string, std::set<std::string>> kAllowed{
       "film", "gui"}},
     {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
-const std::set<std::string> kOurFolders{"base",     "volume",  "tf",    "saliency", "render",   "image_io",
-                                        "optimize", "engines", "bench", "session",  "study",    "report",
-                                        "film",     "ranks",   "cli",   "gui",      "gpu_check"};
+const std::set<std::string> kOurFolders{"base",    "volume", "tf",        "saliency", "render", "image_io", "optimize",
+                                        "engines", "bench",  "session",   "study",    "report", "film",     "ranks",
+                                        "cli",     "gui",    "gpu_check", "foreign",  "reader"};
 
 /// The folders of app/gui: each may include those before its row, and itself. What lies beside them, main.cpp, all.
 const std::vector<std::set<std::string>> kGuiRows{{"jobs"},   {"store"},    {"widgets"},     {"dialogs"},
@@ -185,6 +187,7 @@ std::string fault(const Include& include) {
         layer != "app/paraview")
         return "only pellucid-mpi and the plugin may include ranks/mpi";
     if (startsWith(include.name, "vtk") && layer != "app/paraview") return "VTK outside app/paraview";
+    if (startsWith(include.name, "gdcm") && layer != "src/foreign") return "GDCM outside src/foreign";
     static const std::regex qt("^(Q[A-Z]|Qt[A-Z]).*");
     if (std::regex_match(include.name, qt) && layer != "app/gui") return "Qt outside app/gui";
     if (layer == "app/gui")
@@ -242,6 +245,8 @@ TEST_CASE("the rule itself catches what it should", "[layering]") {
     CHECK(fault({"src/base/a.cpp", 1, "volume/grid.h"}) != "");
     CHECK(fault({"src/render/a.cpp", 1, "epoxy/gl.h"}) != "");
     CHECK(fault({"src/volume/a.cpp", 1, "vtkImageData.h"}) != "");
+    CHECK(fault({"src/volume/a.cpp", 1, "gdcmReader.h"}) != "");
+    CHECK(fault({"src/session/a.cpp", 1, "foreign/dicom_series.h"}) != "");
     CHECK(fault({"app/paraview/plugin/filters/a.cxx", 1, "vtkImageData.h"}) == "");
     CHECK(fault({"app/paraview/plugin/filters/a.cxx", 1, "image_io/image_file.h"}) != "");
     CHECK(fault({"src/render/a.cpp", 1, "render/gl/gl_engines.h"}) != "");

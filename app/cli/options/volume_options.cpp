@@ -43,8 +43,9 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     m_command = app.get_name();
     app.add_option_function<std::string>(
            "VOLUME", [this](const std::string& text) { path = text; },
-           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVTI, PVD) or (with --raw) headerless file, or sample:NAME; a "
-           "series: "
+           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVTI, PVD), DICOM or (with --raw) headerless file, a folder of "
+           "DICOM "
+           "files, or sample:NAME; a series: "
            "a file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
            "--session")
         ->type_name("");
@@ -54,6 +55,9 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
              "the frame to work on, from 0, of those that --frames selects (default: the session's, else 0)", kGroup);
     addValue(app, "--array", "NAME", array, anyText,
              "array of a file with several (default: its active scalars, else the first)", kGroup);
+    addValue(app, "--series", "NAME", array, anyText,
+             "series of a folder of DICOM files: its name, number or UID (default: the one with the most slices)",
+             kGroup);
     addValue(
         app, "--cache", "MIB",
         [this](const std::string& text, const std::string& option) {

@@ -7,6 +7,7 @@
 #include "controllers/save_controller.h"
 #include "dialogs/ask_file.h"
 #include "dialogs/raw_dialog.h"
+#include "dialogs/series_choice_dialog.h"
 #include "dialogs/series_dialog.h"
 #include "dialogs/series_files.h"
 #include "render/memory_needs.h"
@@ -83,15 +84,27 @@ OpenController::OpenController(Services& services, SaveController& saving)
               prepareToShow(scene, job);
               return scene;
           },
-          [this](const DataChange& change, Scene& scene) { showChanged(change, scene); }) {
-    for (JobBase* job : std::initializer_list<JobBase*>{&m_open, &m_data}) {
+          [this](const DataChange& change, Scene& scene) { showChanged(change, scene); }),
+      m_look([](const Look& look, const JobControl& job) { return contentsOf(look.source, job); },
+             [this](const Look& look, FileContents& contents) {
+                 VolumeSource source = look.source;
+                 if (contents.arrays.size() > 1) {
+                     SeriesChoiceDialog dialog(source, contents, m_services.window());
+                     if (dialog.exec() != QDialog::Accepted) return;
+                     source.array = dialog.series();
+                 }
+                 openVolume(source, look.tfSpec);
+             }) {
+    for (JobBase* job : std::initializer_list<JobBase*>{&m_open, &m_data, &m_look}) {
         connect(job, &JobBase::busyChanged, this, &OpenController::busyChanged);
         connect(job, &JobBase::progress, this, &OpenController::progress);
         connect(job, &JobBase::cancelled, this, &OpenController::cancelled);
     }
     services.showFailuresOf(m_open, tr("Cannot open the file"));
     services.showFailuresOf(m_data, tr("Cannot change the data"));
+    services.showFailuresOf(m_look, tr("Cannot open the file"));
     connect(&m_open, &JobBase::failed, this, &OpenController::failed);
+    connect(&m_look, &JobBase::failed, this, &OpenController::failed);
     connect(&m_data, &JobBase::failed, this, &OpenController::nextChange);
 }
 
@@ -358,7 +371,7 @@ void OpenController::openPath(const QString& path) {
         return;
     }
     VolumeSource source = sourceAt(path);
-    if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source);
+    if (askRawLayout(source) && m_saving.maybeSave()) openChosen(source);
 }
 
 void OpenController::openPaths(QStringList paths) {
@@ -381,14 +394,21 @@ void OpenController::openPaths(QStringList paths) {
         }
         if (volumes.isEmpty()) throw UsageError("there are no volumes here", paths.front().toStdString(), "");
         VolumeSource source = sourceOf(volumes);
-        if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source, tf);
+        if (askRawLayout(source) && m_saving.maybeSave()) openChosen(source, tf);
     });
 }
 
 void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec) {
     if (paths.size() == 1 && isSession(paths.front())) return openSession(paths.front());
     VolumeSource source = sourceOf(paths);
-    if (askRawLayout(source)) openVolume(source, tfSpec);
+    if (askRawLayout(source)) openChosen(source, tfSpec);
+}
+
+void OpenController::openChosen(const VolumeSource& source, const QString& tfSpec) {
+    if (source.raw || source.isSample() || !source.array.empty() || !mayHoldSeries(source.path))
+        return openVolume(source, tfSpec);
+    m_busyText = tr("Looking for series in %1…").arg(titleOf(source));
+    m_look.start({source, tfSpec}, QString::fromStdString(source.path));
 }
 
 bool OpenController::askRawLayout(VolumeSource& source) {
@@ -462,7 +482,7 @@ std::optional<VolumeSource> OpenController::askSeries() {
 }
 
 void OpenController::chooseSeries() {
-    if (const auto source = askSeries(); source && m_saving.maybeSave()) openVolume(*source);
+    if (const auto source = askSeries(); source && m_saving.maybeSave()) openChosen(*source);
 }
 
 void OpenController::chooseRaw() {
@@ -528,6 +548,7 @@ void OpenController::openRecent(const QString& entry) {
 // ---- state
 
 void OpenController::cancel() {
+    m_look.cancel();
     m_open.cancel();
     m_edits.clear();
     m_data.cancel();

@@ -9,6 +9,7 @@
 #include "jobs/job.h"
 #include "session/session_json.h"
 #include "store/session_store.h"
+#include "volume/file_contents.h"
 
 class QAction;
 
@@ -57,7 +58,7 @@ public:
     /// are made of several of them, a ground, an overlay.
     void editInJob(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
 
-    bool isBusy() const { return m_open.isRunning() || m_data.isRunning(); }
+    bool isBusy() const { return m_open.isRunning() || m_data.isRunning() || m_look.isRunning(); }
     const QString& busyText() const { return m_busyText; } ///< "Opening scan.nrrd…"
     void cancel();
 
@@ -83,6 +84,10 @@ private:
         Scene scene;
         std::optional<Error> tfError;
     };
+    struct Look {
+        VolumeSource source;
+        QString tfSpec;
+    };
     struct DataChange {
         QString text;
         SessionStore::Change change;
@@ -106,8 +111,10 @@ private:
     void openRegion();
     void openWhole();
     void openPart(const QString& text, const std::optional<VoxelRegion>& region); ///< empty: all
-    bool askRawLayout(VolumeSource& source);                                      ///< false: the user gave up
-    bool askLayout(VolumeSource& source, const QStringList& files);               ///< likewise
+    /// openVolume(), after the question which series is meant where there are several.
+    void openChosen(const VolumeSource& source, const QString& tfSpec = {});
+    bool askRawLayout(VolumeSource& source);                        ///< false: the user gave up
+    bool askLayout(VolumeSource& source, const QStringList& files); ///< likewise
     void chooseVolume();
     void chooseSeries();
     QStringList askFiles(const QString& title, const QString& others);
@@ -125,6 +132,7 @@ private:
     std::deque<Edit> m_edits; ///< those that wait for it
     Job<Request, Opened> m_open;
     Job<DataChange, Scene> m_data;
+    Job<Look, FileContents> m_look; ///< at what a path holds, before it is opened
 };
 
 } // namespace pellucid::gui

@@ -124,9 +124,6 @@ std::string describeContent(std::string_view head) {
 namespace {
 
 std::optional<FileError> unreadFormat(const std::string& path, std::string_view head) {
-    if (isDicom(head))
-        return FileError("this is a DICOM file, which Pellucid cannot read yet", path,
-                         "convert the series to NIfTI or NRRD, for example with dcm2niix");
     if (isTiff(head))
         return FileError("this is a TIFF image, which Pellucid cannot read yet", path,
                          "convert it to NRRD or MetaImage, for example with ImageJ");

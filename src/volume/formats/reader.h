@@ -40,6 +40,14 @@ VolumeFormat niftiFormat();
 VolumeFormat vtiFormat();  ///< vtk_image.cpp
 VolumeFormat pvtiFormat(); ///< vtk_image.cpp
 VolumeFormat pvdFormat();  ///< vtk_collection.cpp
+VolumeFormat dicomFormat();
+
+/// Whether a file is DICOM by its content.
+bool isDicom(const std::string& path);
+/// Whether a folder is to be opened as DICOM: the first files in it, or in folders below, are.
+bool holdsDicom(const std::string& folder);
+/// The slice in the middle of a DICOM volume.
+Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job);
 
 /// Time steps of source.path as *source.raw says, see contentsOf(). Throws FileError.
 int rawSteps(const VolumeSource& source);

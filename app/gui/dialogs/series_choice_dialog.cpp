@@ -1,0 +1,92 @@
+#include "dialogs/series_choice_dialog.h"
+
+#include <algorithm>
+
+#include <QDialogButtonBox>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "dialogs/closing_buttons.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kPictureSize = 96;
+
+/// What a list shows before the picture is there, and where it cannot be read.
+QPixmap emptyPicture(const QWidget& widget) {
+    return swatchOf(widget.palette().color(QPalette::AlternateBase), kPictureSize, kPictureSize);
+}
+
+} // namespace
+
+SeriesChoiceDialog::SeriesChoiceDialog(const VolumeSource& source, const FileContents& contents, QWidget* parent)
+    : QDialog(parent), m_names(contents.arrays),
+      m_list(named(new QListWidget(this), "seriesList", tr("Double-click a series to open it"))),
+      m_pictures(
+          &SeriesChoiceDialog::pictureOf,
+          [this](const Asked& asked, QImage& image) {
+              if (image.isNull()) return;
+              m_list->item(asked.row)->setIcon(QPixmap::fromImage(
+                  image.scaled(kPictureSize, kPictureSize, Qt::KeepAspectRatio, Qt::SmoothTransformation)));
+          },
+          WhenBusy::Queue) {
+    setObjectName("seriesChoiceDialog");
+    setWindowTitle(tr("Choose a series"));
+    auto* what = wrappedLabel("seriesWhat", this);
+    what->setText(tr("%L1 series were found. Which one do you want to open?").arg(m_names.size()));
+    m_list->setIconSize({kPictureSize, kPictureSize});
+    m_list->setMinimumSize(460, 360);
+    m_list->setSpacing(3);
+    for (std::size_t i = 0; i < m_names.size(); ++i) {
+        QString text = QString::fromStdString(m_names[i]);
+        if (i < contents.details.size()) text += QStringLiteral("\n") + QString::fromStdString(contents.details[i]);
+        m_list->addItem(new QListWidgetItem(QIcon(emptyPicture(*this)), text));
+        VolumeSource asked = source;
+        asked.array = m_names[i];
+        m_pictures.start({asked, static_cast<int>(i)});
+    }
+    auto* buttons = closingButtons(*this, QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    add(*inset(new QVBoxLayout(this), {18, 16, 18, 12}), {what, {m_list, 1}, buttons});
+    connect(m_list, &QListWidget::itemActivated, this, &QDialog::accept);
+    m_list->setCurrentRow(0);
+    m_list->setFocus();
+}
+
+std::string SeriesChoiceDialog::series() const { return m_names.at(static_cast<std::size_t>(m_list->currentRow())); }
+
+/// Empty where the series cannot be read: opening it says why.
+QImage SeriesChoiceDialog::pictureOf(const Asked& asked, const JobControl& job) {
+    try {
+        const Volume slice = loadMiddleSlice(asked.source, {job.stop, {}});
+        const Int3 dims = slice.dims();
+        std::vector<double> values;
+        for (std::size_t i = 0; i < slice.size(); ++i)
+            if (slice.isValid(i)) values.push_back(slice.value(i));
+        if (values.empty()) return {};
+        const auto part = [&](double share) {
+            const auto at =
+                values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+            std::ranges::nth_element(values, at);
+            return *at;
+        };
+        constexpr double kDark = 0.01, kBright = 0.995; // a few wild values do not make the rest grey
+        const double lo = part(kDark), hi = std::max(part(kBright), lo + 1e-30);
+        QImage image(dims.x, dims.y, QImage::Format_Grayscale8);
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x) {
+                const double value = slice.value(static_cast<std::size_t>(y) * static_cast<std::size_t>(dims.x) +
+                                                 static_cast<std::size_t>(x));
+                image.scanLine(y)[x] = static_cast<uchar>(std::clamp(255 * (value - lo) / (hi - lo), 0.0, 255.0));
+            }
+        return image;
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+} // namespace pellucid::gui

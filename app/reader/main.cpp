@@ -1,0 +1,102 @@
+// pellucid-reader: reads one file of a format whose library is not ours, for the program that has started it
+// (volume/process/reader_process.h). Its standard input says what to read; voxels go to the file number 3.
+#include <algorithm>
+#include <cstdint>
+#include <iostream>
+#include <string>
+
+#include <nlohmann/json.hpp>
+#include <sys/mman.h>
+
+#include "confinement.h"
+#include "foreign/dicom_series.h"
+#include "volume/process/reader_messages.h"
+
+namespace pellucid::reader {
+
+namespace {
+
+constexpr int kVoxels = 3;
+constexpr std::uint64_t kSpare = 256u << 20; ///< for libraries, besides what files and voxels take
+
+void say(const nlohmann::json& message) { std::cout << message.dump() << "\n" << std::flush; }
+
+/// Memory for the voxels, which are the asker's.
+std::byte* mapVoxels(std::uint64_t bytes) {
+    void* const at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, kVoxels, 0);
+    if (at == MAP_FAILED) throw FileError("there is no memory for the voxels", "", "use a smaller volume");
+    return static_cast<std::byte*>(at);
+}
+
+JobControl progressTeller() {
+    return {{}, [last = -1.0](double done) mutable {
+                if (done < last + 0.01) return;
+                last = done;
+                say({{"progress", done}});
+            }};
+}
+
+/// Time and memory by what has to be read: a library has a file as it is and unpacked, and we have it once more.
+class Limits {
+public:
+    void setVoxels(std::uint64_t bytes) { m_voxels = bytes; }
+    void setImage(std::uint64_t bytes) { m_most = std::max(m_most, bytes); }
+    void beforeFile(std::uint64_t bytes) {
+        m_most = std::max(m_most, bytes);
+        limitTime(bytes);
+        limitMemory(m_voxels + 4 * m_most + kSpare);
+    }
+
+private:
+    std::uint64_t m_voxels = 0, m_most = 0;
+};
+
+void answer(const ReaderRequest& request) {
+    confineTo(DicomSeries::folderOf(request.path));
+    Limits limits;
+    const BeforeFile before = [&](std::uint64_t bytes) { limits.beforeFile(bytes); };
+    before(0);
+    DicomSeries series(request.path, request.array, before);
+    if (request.middleOnly) series.keepMiddle();
+    if (request.task == ReaderRequest::Task::Describe) return say(jsonOf(series.contents()));
+    if (request.task == ReaderRequest::Task::List) return say({{"files", series.files()}});
+    const ReaderLayout layout = series.layout(request.step);
+    say(jsonOf(layout));
+    std::string line;
+    if (!std::getline(std::cin, line)) return; // nobody wants them
+    const std::uint64_t bytes = bytesOf(layout.layout, request.path);
+    limits.setVoxels(bytes);
+    limits.setImage(series.largestImageBytes());
+    before(series.largestFileBytes());
+    series.read(request.step, {mapVoxels(bytes), bytes}, before, progressTeller());
+    say({{"done", true}});
+}
+
+} // namespace
+
+} // namespace pellucid::reader
+
+int main() {
+    using namespace pellucid;
+    std::string path;
+    try {
+        std::string line;
+        if (!std::getline(std::cin, line)) {
+            std::cerr << "pellucid-reader is started by Pellucid; open files with pellucid or pellucid-cli\n";
+            return 2;
+        }
+        const ReaderRequest request = requestIn(nlohmann::json::parse(line, nullptr, false));
+        path = request.path;
+        reader::answer(request);
+        return 0;
+    } catch (const Error& error) {
+        reader::say(jsonOf(error));
+    } catch (const std::bad_alloc&) {
+        reader::say(jsonOf(FileError("reading it takes more memory than its size justifies", path,
+                                     "the file is damaged: copy it again")));
+    } catch (const std::exception& error) {
+        reader::say(jsonOf(FileError(std::string("the library that reads this format failed (") + error.what() + ")",
+                                     path, "the file is damaged: copy it again")));
+    }
+    return 1;
+}

@@ -1,0 +1,384 @@
+#include "foreign/dicom_series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "base/text.h"
+#include "foreign/dicom_pixels.h"
+#include "volume/file_names.h"
+#include "volume/formats/file_check.h"
+
+namespace pellucid {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFiles = 100'000;
+constexpr int kMostFolders = 8; // below each other
+
+std::uint64_t bytesOfFile(const std::string& path) {
+    std::error_code ec;
+    const auto bytes = fs::file_size(path, ec);
+    return ec ? 0 : bytes;
+}
+
+/// All files in a folder and below, in the order of their names.
+std::vector<std::string> filesBelow(const std::string& folder) {
+    std::vector<std::string> files;
+    std::error_code ec;
+    for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ec);
+         !ec && it != fs::recursive_directory_iterator(); it.increment(ec)) {
+        if (it.depth() > kMostFolders) it.pop();
+        if (it->is_regular_file(ec)) files.push_back(it->path().string());
+        if (files.size() > kMostFiles)
+            throw FileError("there are more than " + std::to_string(kMostFiles) + " files in this folder", folder,
+                            "name the folder of one study");
+    }
+    std::ranges::sort(files, countsBefore);
+    return files;
+}
+
+/// The pictures of these files. Files that are no DICOM or have no pictures are passed over; one that cannot be read is
+/// told of in `faults`.
+std::vector<DicomFrame> framesIn(const std::vector<std::string>& files, const BeforeFile& before,
+                                 std::vector<FileError>& faults) {
+    std::vector<DicomFrame> frames;
+    for (const std::string& file : files) {
+        before(bytesOfFile(file));
+        if (!isDicomFile(file)) continue;
+        try {
+            const std::vector<DicomFrame> more = readDicomHeader(file);
+            frames.insert(frames.end(), more.begin(), more.end());
+        } catch (const FileError& fault) {
+            faults.push_back(fault);
+        }
+    }
+    return frames;
+}
+
+/// Pictures that can be in one volume have the same key.
+std::string keyOf(const DicomFrame& frame) {
+    std::string key = frame.seriesUid + "|" + std::to_string(frame.pixels.columns) + "x" +
+                      std::to_string(frame.pixels.rows) + "x" + std::to_string(frame.pixels.samples) + "|" +
+                      std::to_string(frame.pixels.bitsAllocated) + (frame.pixels.isSigned ? "s" : "u");
+    if (!frame.axes) return key;
+    constexpr double kSteps = 200; // directions within about half a degree are the same
+    for (const Vec3& axis : *frame.axes)
+        for (int a = 0; a < 3; ++a) key += "|" + std::to_string(static_cast<long>(std::lround(axis[a] * kSteps)));
+    return key;
+}
+
+struct Series {
+    std::string name;
+    std::vector<DicomFrame> frames;
+};
+
+std::string nameOf(const DicomFrame& frame) {
+    const std::string text = frame.description.empty() ? frame.modality : frame.description;
+    return std::to_string(frame.seriesNumber) + (text.empty() ? "" : ": " + printable(text.substr(0, 100)));
+}
+
+/// By their numbers; names that several have get numbers behind.
+std::vector<Series> seriesOf(const std::vector<DicomFrame>& frames) {
+    std::map<std::string, Series> byKey;
+    for (const DicomFrame& frame : frames) byKey[keyOf(frame)].frames.push_back(frame);
+    std::vector<Series> all;
+    for (auto& [key, series] : byKey) all.push_back(std::move(series));
+    std::ranges::stable_sort(all, {}, [](const Series& series) { return series.frames.front().seriesNumber; });
+    std::set<std::string> taken;
+    for (Series& series : all) {
+        const std::string name = nameOf(series.frames.front());
+        series.name = name;
+        for (int n = 2; !taken.insert(series.name).second; ++n) series.name = name + " (" + std::to_string(n) + ")";
+    }
+    return all;
+}
+
+/// "512 × 512 pixels, 24 pictures".
+std::string detailsOf(const Series& series) {
+    const DicomFrame& first = series.frames.front();
+    const std::size_t count = series.frames.size();
+    return std::to_string(first.pixels.columns) + " × " + std::to_string(first.pixels.rows) + " pixels, " +
+           std::to_string(count) + (count == 1 ? " picture" : " pictures");
+}
+
+bool isMeant(const Series& series, const std::string& wanted) {
+    const DicomFrame& first = series.frames.front();
+    return wanted == series.name || wanted == std::to_string(first.seriesNumber) || wanted == first.description ||
+           wanted == first.seriesUid;
+}
+
+/// The range of the numbers that may be stored.
+ValueRange storedRange(const DicomPixels& pixels) {
+    const double half = std::ldexp(1.0, pixels.bitsStored - 1);
+    return pixels.isSigned ? ValueRange{-half, half - 1} : ValueRange{0, 2 * half - 1};
+}
+
+template <class T>
+bool holds(const ValueRange& range) {
+    return range.lo >= static_cast<double>(std::numeric_limits<T>::min()) &&
+           range.hi <= static_cast<double>(std::numeric_limits<T>::max());
+}
+
+/// Calls use(a number of the type).
+template <class Use>
+void withKept(ValueType type, const Use& use) {
+    switch (type) {
+    case ValueType::U8:
+        return use(std::uint8_t{});
+    case ValueType::I8:
+        return use(std::int8_t{});
+    case ValueType::U16:
+        return use(std::uint16_t{});
+    case ValueType::I16:
+        return use(std::int16_t{});
+    case ValueType::U32:
+        return use(std::uint32_t{});
+    case ValueType::I32:
+        return use(std::int32_t{});
+    case ValueType::F32:
+        return use(float{});
+    default:
+        return use(double{});
+    }
+}
+
+/// The values of pictures, file by file as they are asked for.
+class PictureReader {
+public:
+    PictureReader(const std::vector<DicomFrame>& frames, const BeforeFile& before)
+        : m_frames(frames), m_before(before) {}
+
+    /// value = slope · stored + intercept of picture n.
+    void read(std::size_t n, std::span<double> values) {
+        const DicomFrame& frame = m_frames[n];
+        if (m_file != frame.file) {
+            m_before(bytesOfFile(frame.file));
+            m_bytes = {}; // its memory is wanted
+            m_bytes = unpackDicom(frame);
+            m_file = frame.file;
+        }
+        const std::size_t bytesPer = static_cast<std::size_t>(frame.pixels.bitsAllocated / 8);
+        const char* from = m_bytes.data() + static_cast<std::size_t>(frame.frame) * values.size() * bytesPer;
+        const int unused = 64 - frame.pixels.bitsStored;
+        for (double& value : values) {
+            std::uint64_t bits = 0;
+            if constexpr (std::endian::native == std::endian::little)
+                std::memcpy(&bits, from, bytesPer);
+            else
+                std::memcpy(reinterpret_cast<char*>(&bits) + (8 - bytesPer), from, bytesPer);
+            from += bytesPer;
+            const std::uint64_t high = bits << unused; // some writers put overlays into bits that are not used
+            const double stored = frame.pixels.isSigned ? static_cast<double>(static_cast<std::int64_t>(high) >> unused)
+                                                        : static_cast<double>(high >> unused);
+            value = frame.slope * stored + frame.intercept;
+        }
+    }
+
+private:
+    const std::vector<DicomFrame>& m_frames;
+    const BeforeFile& m_before;
+    std::string m_file;
+    std::vector<char> m_bytes;
+};
+
+} // namespace
+
+std::string DicomSeries::folderOf(const std::string& path) {
+    std::error_code ec;
+    if (fs::is_directory(path, ec)) return path;
+    const std::string folder = fs::path(path).parent_path().string();
+    return folder.empty() ? "." : folder;
+}
+
+DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, const BeforeFile& before) : m_path(path) {
+    std::error_code ec;
+    const bool isFolder = fs::is_directory(path, ec);
+    std::vector<FileError> faults;
+    std::vector<DicomFrame> frames;
+    std::string ownUid;
+    if (isFolder) {
+        frames = framesIn(filesBelow(path), before, faults);
+    } else {
+        before(bytesOfFile(path));
+        if (const auto named = filesOfDirectory(path); !named.empty()) {
+            std::vector<std::string> there;
+            std::ranges::copy_if(named, std::back_inserter(there),
+                                 [&](const auto& file) { return fs::exists(file, ec); });
+            if (there.size() < named.size())
+                m_notices.push_back(std::to_string(named.size() - there.size()) + " of " +
+                                    std::to_string(named.size()) + " files that the DICOMDIR names are missing");
+            frames = framesIn(there, before, faults);
+        } else {
+            frames = readDicomHeader(path);
+            if (frames.empty()) throw FileError("this DICOM file has no pictures", path, "name another file");
+            if (frames.size() == 1) { // a slice: its series lies around it
+                ownUid = frames.front().seriesUid;
+                const std::string own = keyOf(frames.front());
+                std::vector<FileError> others; // of files that nobody has named
+                std::vector<DicomFrame> around = framesIn(pellucid::filesIn(folderOf(path)), before, others);
+                std::erase_if(around, [&](const DicomFrame& frame) { return keyOf(frame) != own; });
+                if (around.size() > 1 && !ownUid.empty()) frames = std::move(around);
+            }
+        }
+    }
+    if (frames.empty()) {
+        if (!faults.empty()) throw faults.front();
+        throw FileError("no DICOM file here has pictures", path, "name another folder");
+    }
+    std::vector<Series> all = seriesOf(frames);
+    for (const Series& series : all) {
+        m_names.push_back(series.name);
+        m_details.push_back(detailsOf(series));
+    }
+    auto chosen = std::ranges::max_element(all, {}, [](const Series& series) { return series.frames.size(); });
+    if (!wanted.empty()) {
+        chosen = std::ranges::find_if(all, [&](const Series& series) { return isMeant(series, wanted); });
+        if (chosen == all.end())
+            throw UsageError(
+                "there is no series " + inQuotes(wanted), path,
+                "there " + std::string(all.size() == 1 ? "is " : "are ") +
+                    joined(std::span(m_names).first(std::min<std::size_t>(m_names.size(), 20)), ", ", inQuotes));
+    }
+    m_name = chosen->name;
+    m_frames = std::move(chosen->frames);
+    if (all.size() > 1 && wanted.empty())
+        m_notices.push_back("series " + inQuotes(m_name) + " of " + std::to_string(all.size()) + " is shown");
+    if (!faults.empty())
+        m_notices.push_back(std::to_string(faults.size()) + (faults.size() == 1 ? " file" : " files") +
+                            " cannot be read and " + (faults.size() == 1 ? "is" : "are") + " left out: " +
+                            faults.front().problem() + ", " + fs::path(faults.front().where()).filename().string());
+    if (m_frames.front().photometric == "MONOCHROME1")
+        m_notices.emplace_back("small values are meant to be bright (MONOCHROME1): values are kept as they are");
+    if (m_frames.front().photometric == "PALETTE COLOR")
+        m_notices.emplace_back("colours of a palette are shown as their numbers");
+    m_stack = stackOf(m_frames, path);
+}
+
+void DicomSeries::keepMiddle() {
+    for (std::vector<DicomLayer>& layers : m_stack.steps) layers = {layers[layers.size() / 2]};
+    m_stack.geometry.dims.z = 1;
+}
+
+DicomSeries::Kept DicomSeries::keptAs() const {
+    ValueRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+    bool isWhole = true;
+    for (const DicomFrame& frame : m_frames) {
+        isWhole = isWhole && frame.slope == 1 && frame.intercept == std::floor(frame.intercept);
+        const ValueRange stored = storedRange(frame.pixels);
+        range.lo = std::min(range.lo, stored.lo + frame.intercept);
+        range.hi = std::max(range.hi, stored.hi + frame.intercept);
+    }
+    if (!isWhole) // floats hold the numbers of 24 bits
+        return {m_frames.front().pixels.bitsStored <= 24 ? ValueType::F32 : ValueType::F64, false};
+    if (holds<std::uint8_t>(range)) return {ValueType::U8, true};
+    if (holds<std::int8_t>(range)) return {ValueType::I8, true};
+    if (holds<std::uint16_t>(range)) return {ValueType::U16, true};
+    if (holds<std::int16_t>(range)) return {ValueType::I16, true};
+    if (holds<std::uint32_t>(range)) return {ValueType::U32, true};
+    if (holds<std::int32_t>(range)) return {ValueType::I32, true};
+    return {ValueType::F64, true};
+}
+
+ReaderLayout DicomSeries::layout(int step) const {
+    requireIndex("time step", step, m_stack.steps.size(), m_path);
+    ReaderLayout answer;
+    FileLayout& layout = answer.layout;
+    const Geometry& g = m_stack.geometry;
+    layout.type = keptAs().type;
+    const int samples = m_frames.front().pixels.samples;
+    if (samples > 1) layout.axes.push_back({samples, true});
+    for (int a = 0; a < 3; ++a) layout.axes.push_back({g.dims[a]});
+    layout.spacing = g.spacing;
+    layout.origin = g.origin;
+    layout.directions = g.directions;
+    layout.worldAxes = g.worldAxes;
+    layout.array = m_name;
+    layout.notices = m_notices;
+    layout.notices.insert(layout.notices.end(), m_stack.notices.begin(), m_stack.notices.end());
+    const DicomFrame& first = m_frames.front();
+    const bool isSame = std::ranges::all_of(m_frames, [&](const DicomFrame& frame) {
+        return frame.padding == first.padding && frame.slope == first.slope && frame.intercept == first.intercept;
+    });
+    if (first.padding && isSame && samples == 1) {
+        const double value = first.slope * *first.padding + first.intercept;
+        answer.missing = layout.type == ValueType::F32 ? static_cast<double>(static_cast<float>(value)) : value;
+    }
+    return answer;
+}
+
+FileContents DicomSeries::contents() const {
+    FileContents contents = contentsOf(layout(0).layout);
+    contents.steps = static_cast<int>(m_stack.steps.size());
+    contents.times = m_stack.times;
+    contents.timeUnit = m_stack.timeUnit;
+    contents.arrays = m_names;
+    contents.details = m_details;
+    return contents;
+}
+
+std::vector<std::string> DicomSeries::files() const {
+    std::set<std::string> files;
+    for (const DicomFrame& frame : m_frames) files.insert(frame.file);
+    return {files.begin(), files.end()};
+}
+
+std::uint64_t DicomSeries::largestFileBytes() const {
+    std::uint64_t most = 0;
+    for (const std::string& file : files()) most = std::max(most, bytesOfFile(file));
+    return most;
+}
+
+std::uint64_t DicomSeries::largestImageBytes() const {
+    std::uint64_t most = 0;
+    for (const DicomFrame& frame : m_frames) {
+        const DicomPixels& p = frame.pixels;
+        most = std::max(most, static_cast<std::uint64_t>(p.columns) * static_cast<std::uint64_t>(p.rows) *
+                                  static_cast<std::uint64_t>(p.samples * frame.framesInFile * (p.bitsAllocated / 8)));
+    }
+    return most;
+}
+
+void DicomSeries::read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const {
+    const DicomPixels& pixels = m_frames.front().pixels;
+    const std::size_t samples = static_cast<std::size_t>(pixels.columns) * static_cast<std::size_t>(pixels.rows) *
+                                static_cast<std::size_t>(pixels.samples);
+    const std::vector<DicomLayer>& layers = m_stack.steps.at(static_cast<std::size_t>(step));
+    const Kept kept = keptAs();
+    PictureReader pictures(m_frames, before);
+    std::map<std::size_t, std::vector<double>> values; // the last two pictures
+    const auto picture = [&](std::size_t n) -> const std::vector<double>& {
+        if (const auto found = values.find(n); found != values.end()) return found->second;
+        std::vector<double> read(samples);
+        pictures.read(n, read);
+        return values[n] = std::move(read);
+    };
+    withKept(kept.type, [&](auto zero) {
+        using T = decltype(zero);
+        PELLUCID_CHECK(voxels.size() == samples * layers.size() * sizeof(T));
+        T* to = reinterpret_cast<T*>(voxels.data());
+        for (std::size_t k = 0; k < layers.size(); ++k) {
+            const DicomLayer& layer = layers[k];
+            std::erase_if(values,
+                          [&](const auto& entry) { return entry.first != layer.before && entry.first != layer.after; });
+            const std::vector<double>& from = picture(layer.before);
+            const std::vector<double>& other = picture(layer.after);
+            for (std::size_t i = 0; i < samples; ++i) {
+                double value = from[i];
+                if (layer.toAfter > 0) value += layer.toAfter * (other[i] - from[i]);
+                if constexpr (std::is_integral_v<T>) value = std::round(value);
+                *to++ = static_cast<T>(value);
+            }
+            job.throwIfStopped();
+            job.report(static_cast<double>(k + 1) / static_cast<double>(layers.size()));
+        }
+    });
+}
+
+} // namespace pellucid
