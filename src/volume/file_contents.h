@@ -18,6 +18,7 @@ struct FileContents {
     std::string timeUnit;               ///< "s", "ms", …; empty: not known
     std::vector<std::string> stepFiles; ///< of a collection, the file of each step; empty: they are in this one
     std::vector<std::string> arrays;    ///< by name, in their order; empty: there is one, without a name
+    std::string array;                  ///< the one that all this is said of; empty: it has no name
     std::vector<std::string> details;   ///< of each array how large it is; empty where all are of one grid
 };
 

@@ -16,6 +16,7 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QMenu>
+#include <QMessageBox>
 #include <QMimeData>
 #include <QPushButton>
 #include <QSettings>
@@ -323,4 +324,31 @@ TEST_CASE("nothing is opened where no DICOM series is chosen, and a broken slice
     CHECK(said.contains("a3"));
     CHECK(said.contains("268 of 288 bytes"));
     CHECK(w.services().store().session() == session);
+}
+
+TEST_CASE("a header that names a file outside its folder is opened only after a question", "[series]") {
+    const QTemporaryDir folder;
+    REQUIRE(QDir(folder.path()).mkdir("headers"));
+    std::ofstream(folder.filePath("values.raw").toStdString(), std::ios::binary)
+        << std::string(kSide * kSide * kSide, 'a');
+    const QString header = folder.filePath("headers/a.nhdr");
+    std::ofstream(header.toStdString()) << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencoding: raw\n"
+                                           "data file: ../values.raw\n";
+    OpenWindow w;
+    QSignalSpy opened(&w.opening(), &OpenController::opened), failed(&w.opening(), &OpenController::failed);
+    QString asked;
+    answer("askOutside", [&](QDialog& dialog) {
+        asked = dynamic_cast<QMessageBox&>(dialog).text();
+        dialog.reject();
+    });
+    w.opening().openPath(header);
+    REQUIRE(waitFor([&] { return failed.count() == 1; }));
+    CHECK(asked.contains("../values.raw"));
+    CHECK(opened.count() == 0);
+    answer("askOutside", [&](QDialog& dialog) {
+        QTest::mouseClick(dynamic_cast<QMessageBox&>(dialog).button(QMessageBox::Open), Qt::LeftButton);
+    });
+    w.opening().openPath(header);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    CHECK(w.services().scene().volume->dims() == Int3(kSide));
 }

@@ -357,7 +357,7 @@ TEST_CASE("a data file beside the header must exist and be long enough", "[bad-i
         CHECK_THAT(errorOf(header), Contains("the data file 'none.raw' that the header names is missing") &&
                                         Contains(header) && !Contains("no such file"));
         CHECK_THAT(errorOf(make("below/none.raw")), Contains("'below/none.raw'"));
-        CHECK_THAT(errorOf(make("/" + std::string(100, 'x') + "/none.raw")), Contains("'none.raw'"));
+        CHECK_THAT(errorOf(make(std::string(100, 'x') + "/none.raw")), Contains("'none.raw'"));
         CHECK_THAT(errorOf(make("short.raw")), Contains("7 of 8 bytes") && Contains("short.raw"));
         CHECK_THAT(errorOf(make("LIST")), Contains("several parts"));
         CHECK_THAT(errorOf(make("slice%s.raw 1 2 1")), Contains("several parts"));

@@ -385,7 +385,7 @@ TEST_CASE("faults of pieces are told with the file that has them", "[vtk][pieces
     for (const std::string& source : {elsewhere, std::string("../left.vti"), std::string("a/../../left.vti"),
                                       std::string("/left.vti"), std::string("..")}) {
         CAPTURE(source);
-        CHECK_THAT(ofHeader(pvti(image, {kNumber}, {{leftText, source}})), Contains("outside the folder"));
+        CHECK_THAT(ofHeader(pvti(image, {kNumber}, {{leftText, source}})), Contains("outside its own folder"));
     }
     CHECK_THAT(ofHeader(pvti(image, {kNumber}, {{leftText, ""}})), Contains("names no file"));
     CHECK_THAT(ofHeader(pvti(image, {kNumber}, {{leftText, std::string(2000, 'a')}})), Contains("too long"));

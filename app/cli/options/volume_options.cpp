@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "parse.h"
 #include "session/variable_edits.h"
+#include "volume/outside_files.h"
 
 namespace pellucid::cli {
 
@@ -49,6 +50,10 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
            "a file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
            "--session")
         ->type_name("");
+    app.add_flag_callback(
+           "--allow-outside", [] { allowOutsideFiles(); },
+           "headers may name data files outside their own folder: for files that you trust")
+        ->group(kGroup);
     addValue(app, "--frames", "A:B[:STEP]", frames, parseFrames,
              "only these frames of a series, from 0, B included; A or B may be left out", kGroup);
     addValue(app, "--frame", "N", frame, wholeFrom(0, std::numeric_limits<int>::max()),

@@ -1,4 +1,5 @@
-// VOLUME, --frames, --frame, --array, --cache, --raw, --spacing, --skip, --missing, --range, --component, --axes,
+// VOLUME, --allow-outside, --frames, --frame, --array, --cache, --raw, --spacing, --skip, --missing, --range,
+// --component, --axes,
 // --sample-size, --seed, --downsample, --region: what is opened.
 #pragma once
 

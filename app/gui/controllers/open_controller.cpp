@@ -1,6 +1,7 @@
 #include "controllers/open_controller.h"
 
 #include <QMenu>
+#include <QMessageBox>
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +20,7 @@
 #include "tf/presets.h"
 #include "volume/excerpt.h"
 #include "volume/file_contents.h"
+#include "volume/outside_files.h"
 #include "volume/procedural.h"
 #include "widgets/number_text.h"
 
@@ -87,23 +89,18 @@ OpenController::OpenController(Services& services, SaveController& saving)
           [this](const DataChange& change, Scene& scene) { showChanged(change, scene); }),
       m_look([](const Look& look, const JobControl& job) { return contentsOf(look.source, job); },
              [this](const Look& look, FileContents& contents) {
-                 VolumeSource source = look.source;
-                 if (contents.arrays.size() > 1) {
-                     SeriesChoiceDialog dialog(source, contents, m_services.window());
-                     if (dialog.exec() != QDialog::Accepted) return;
-                     source.array = dialog.series();
-                 }
-                 openVolume(source, look.tfSpec);
+                 // The looking has come to its end before somebody is asked.
+                 QMetaObject::invokeMethod(
+                     this, [this, look, contents] { openSeries(look, contents); }, Qt::QueuedConnection);
              }) {
     for (JobBase* job : std::initializer_list<JobBase*>{&m_open, &m_data, &m_look}) {
         connect(job, &JobBase::busyChanged, this, &OpenController::busyChanged);
         connect(job, &JobBase::progress, this, &OpenController::progress);
         connect(job, &JobBase::cancelled, this, &OpenController::cancelled);
     }
-    services.showFailuresOf(m_open, tr("Cannot open the file"));
     services.showFailuresOf(m_data, tr("Cannot change the data"));
     services.showFailuresOf(m_look, tr("Cannot open the file"));
-    connect(&m_open, &JobBase::failed, this, &OpenController::failed);
+    connect(&m_open, &JobBase::failed, this, &OpenController::showFailure);
     connect(&m_look, &JobBase::failed, this, &OpenController::failed);
     connect(&m_data, &JobBase::failed, this, &OpenController::nextChange);
 }
@@ -164,7 +161,7 @@ void OpenController::openVolume(const VolumeSource& source, const QString& tfSpe
         request.tfPath = tfSpec;
     }
     m_busyText = tr("Opening %1…").arg(titleOf(source));
-    m_open.start(std::move(request), QString::fromStdString(source.path));
+    begin(std::move(request), QString::fromStdString(source.path));
 }
 
 void OpenController::openSession(const QString& path) {
@@ -175,7 +172,7 @@ void OpenController::openSession(const QString& path) {
         request.notices = std::move(file.notices);
         request.sessionPath = path;
         m_busyText = tr("Opening %1…").arg(QFileInfo(path).fileName());
-        m_open.start(std::move(request), path);
+        begin(std::move(request), path);
     });
 }
 
@@ -195,7 +192,32 @@ void OpenController::openRecovered(const SessionFile& file, const std::function<
     request.unsaved = true;
     request.then = then;
     m_busyText = tr("Restoring…");
-    m_open.start(std::move(request), tr("the unsaved work"));
+    begin(std::move(request), tr("the unsaved work"));
+}
+
+void OpenController::begin(Request request, const QString& where) {
+    m_request = request;
+    m_open.start(std::move(request), where);
+}
+
+void OpenController::showFailure(const Error& error) {
+    if (error.remedy() == Remedy::AllowOutside) {
+        QMessageBox box(QMessageBox::Warning, tr("A file outside the folder"),
+                        tr("%1: %2.").arg(QFileInfo(QString::fromStdString(error.where())).fileName(),
+                                          QString::fromStdString(error.problem())),
+                        QMessageBox::Open | QMessageBox::Cancel, m_services.window());
+        box.setObjectName("askOutside");
+        box.setTextFormat(Qt::PlainText);
+        box.setInformativeText(tr("Open it only if you trust this file."));
+        box.setDefaultButton(QMessageBox::Cancel);
+        if (box.exec() == QMessageBox::Open) {
+            allowOutsideFiles(error.where());
+            return begin(m_request, QString::fromStdString(error.where()));
+        }
+    } else {
+        m_services.showError(tr("Cannot open the file"), error);
+    }
+    Q_EMIT failed(error);
 }
 
 OpenController::Opened OpenController::load(const Request& request, const JobControl& job) {
@@ -402,6 +424,16 @@ void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec
     if (paths.size() == 1 && isSession(paths.front())) return openSession(paths.front());
     VolumeSource source = sourceOf(paths);
     if (askRawLayout(source)) openChosen(source, tfSpec);
+}
+
+void OpenController::openSeries(const Look& look, const FileContents& contents) {
+    VolumeSource source = look.source;
+    if (contents.arrays.size() > 1) {
+        SeriesChoiceDialog dialog(source, contents, m_services.window());
+        if (dialog.exec() != QDialog::Accepted) return;
+        source.array = dialog.series();
+    }
+    openVolume(source, look.tfSpec);
 }
 
 void OpenController::openChosen(const VolumeSource& source, const QString& tfSpec) {

@@ -99,6 +99,9 @@ private:
         std::function<void()> then;
     };
 
+    void begin(Request request, const QString& where);
+    /// Says why nothing was opened; where files outside a folder are named it asks, and may begin again.
+    void showFailure(const Error& error);
     void start(Edit edit);
     void nextChange();
     void showChanged(const DataChange& change, Scene& scene);
@@ -113,8 +116,9 @@ private:
     void openPart(const QString& text, const std::optional<VoxelRegion>& region); ///< empty: all
     /// openVolume(), after the question which series is meant where there are several.
     void openChosen(const VolumeSource& source, const QString& tfSpec = {});
-    bool askRawLayout(VolumeSource& source);                        ///< false: the user gave up
-    bool askLayout(VolumeSource& source, const QStringList& files); ///< likewise
+    void openSeries(const Look& look, const FileContents& contents); ///< after that question
+    bool askRawLayout(VolumeSource& source);                         ///< false: the user gave up
+    bool askLayout(VolumeSource& source, const QStringList& files);  ///< likewise
     void chooseVolume();
     void chooseSeries();
     QStringList askFiles(const QString& title, const QString& others);
@@ -128,6 +132,7 @@ private:
     SaveController& m_saving;
     QAction* m_clearRecent = nullptr;
     QString m_busyText;
+    Request m_request;        ///< the latest one
     Edit m_edit;              ///< the one under way
     std::deque<Edit> m_edits; ///< those that wait for it
     Job<Request, Opened> m_open;

@@ -53,7 +53,8 @@ SeriesChoiceDialog::SeriesChoiceDialog(const VolumeSource& source, const FileCon
     auto* buttons = closingButtons(*this, QDialogButtonBox::Open | QDialogButtonBox::Cancel);
     add(*inset(new QVBoxLayout(this), {18, 16, 18, 12}), {what, {m_list, 1}, buttons});
     connect(m_list, &QListWidget::itemActivated, this, &QDialog::accept);
-    m_list->setCurrentRow(0);
+    const auto first = std::ranges::find(m_names, contents.array);
+    m_list->setCurrentRow(first == m_names.end() ? 0 : static_cast<int>(first - m_names.begin()));
     m_list->setFocus();
 }
 

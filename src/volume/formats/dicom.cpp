@@ -8,7 +8,16 @@ namespace pellucid {
 
 namespace {
 
+/// Throws FileError for a file that is clearly something else, whatever its suffix promises.
+void requireNothingElse(const std::string& path) {
+    std::error_code ec;
+    if (std::filesystem::is_directory(path, ec)) return;
+    const std::string head = fileHead(path, 1024), content = describeContent(head);
+    if (content != "a DICOM file" && content != "binary data") throw notOfFormat("a DICOM file", path, head);
+}
+
 ReaderRequest requestOf(const VolumeSource& source) {
+    requireNothingElse(source.path);
     ReaderRequest request;
     request.path = source.path;
     request.array = source.array;

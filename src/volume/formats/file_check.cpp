@@ -112,8 +112,8 @@ std::string describeContent(std::string_view head) {
     };
     for (const auto& [signature, description] : kSignatures)
         if (head.substr(0, signature.size()) == signature) return description;
+    if (isDicom(head)) return "a DICOM file"; // which may begin like a TIFF image, to be both
     if (isTiff(head)) return "a TIFF image";
-    if (isDicom(head)) return "a DICOM file";
     const auto looksLikeText = [](char c) {
         const auto u = static_cast<unsigned char>(c);
         return u >= 0x20 || u == '\n' || u == '\r' || u == '\t';
@@ -124,7 +124,7 @@ std::string describeContent(std::string_view head) {
 namespace {
 
 std::optional<FileError> unreadFormat(const std::string& path, std::string_view head) {
-    if (isTiff(head))
+    if (isTiff(head) && !isDicom(head))
         return FileError("this is a TIFF image, which Pellucid cannot read yet", path,
                          "convert it to NRRD or MetaImage, for example with ImageJ");
     return {};

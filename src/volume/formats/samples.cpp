@@ -571,6 +571,7 @@ FileContents contentsOf(const FileLayout& layout) {
     });
     contents.components = static_cast<int>(std::min(selection.components, kMost));
     contents.steps = static_cast<int>(std::min(selection.steps, kMost));
+    contents.array = layout.array;
     contents.arrays = layout.arrays;
     if (!layout.times) return contents;
     contents.timeUnit = layout.times->unit;

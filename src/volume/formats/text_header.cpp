@@ -6,6 +6,8 @@
 #include <limits>
 #include <regex>
 
+#include "volume/outside_files.h"
+
 namespace pellucid {
 
 TextHeader::TextHeader(const std::string& path, const std::function<bool(TextHeader&, const std::string& line)>& take)
@@ -54,6 +56,7 @@ std::vector<std::int64_t> TextHeader::sizes(const std::string& name, const std::
 std::string TextHeader::dataPath(const std::string& name) const {
     const std::string file = get(name);
     if (file.size() > 1000) fail("the name of the data file is too long");
+    requireInside(m_path, file);
     const std::string path = (std::filesystem::path(m_path).parent_path() / file).string();
     std::error_code ec;
     static const std::regex kParts(R"((LIST|SKIPLIST)(\s.*)?|\S*%\S*(\s+-?[0-9]+)+)");

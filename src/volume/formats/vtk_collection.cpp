@@ -6,6 +6,7 @@
 
 #include "volume/formats/reader.h"
 #include "volume/formats/vtk_header.h"
+#include "volume/outside_files.h"
 
 namespace pellucid {
 
@@ -36,6 +37,7 @@ std::vector<CollectionEntry> readCollection(const std::string& path, const JobCo
         const std::string file = tag.get("file");
         if (file.empty()) failInVtk(path, "a data set of the collection names no file");
         if (file.size() > 1000) failInVtk(path, "the name of a file is too long");
+        requireInside(path, file);
         if (lowerCase(file).ends_with(".pvd")) failInVtk(path, "the collection names another collection");
         CollectionEntry entry{(fs::path(path).parent_path() / file).string(), {}};
         const std::string text = trimmed(tag.get("timestep"));

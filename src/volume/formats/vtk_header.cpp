@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 
 #include "volume/formats/file_check.h"
+#include "volume/outside_files.h"
 
 namespace pellucid {
 
@@ -64,16 +65,12 @@ VtkArray arrayOf(const XmlTag& tag, const std::string& path) {
     return array;
 }
 
-/// The file that a piece of the file `path` names. It lies in the same folder or one within: a header that comes from
-/// somewhere does not choose among all files of a machine.
+/// The file that a piece of the file `path` names.
 std::string fileOfPiece(const std::string& source, const std::string& path) {
     if (source.empty()) failInVtk(path, "a piece names no file");
     if (source.size() > 1000) failInVtk(path, "the name of a piece's file is too long");
-    const fs::path file = fs::path(source).lexically_normal();
-    if (file.has_root_path() || *file.begin() == "..")
-        failInVtk(path, "its piece " + inQuotes(source) + " lies outside the folder of the file",
-                  "put the pieces beside the file, and name them relative to it");
-    return (fs::path(path).parent_path() / file).string();
+    requireInside(path, source);
+    return (fs::path(path).parent_path() / fs::path(source).lexically_normal()).string();
 }
 
 VtkPiece pieceOf(const XmlTag& tag, const VtkImage& image) {

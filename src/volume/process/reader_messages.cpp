@@ -66,6 +66,7 @@ json jsonOf(const FileContents& contents) {
               {"steps", contents.steps},
               {"times", contents.times},
               {"unit", contents.timeUnit},
+              {"array", contents.array},
               {"arrays", contents.arrays},
               {"details", contents.details}}}};
 }
@@ -81,6 +82,7 @@ FileContents contentsIn(const json& message) {
     contents.steps = value["steps"].whole(1, kMost);
     contents.times = value["times"].numbers();
     contents.timeUnit = textIn(value["unit"]);
+    contents.array = textIn(value["array"]);
     contents.arrays = textsIn(value["arrays"]);
     contents.details = textsIn(value["details"]);
     return contents;
