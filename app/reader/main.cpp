@@ -1,5 +1,5 @@
-// pellucid-reader: reads one file of a format whose library is not ours, for the program that has started it
-// (volume/process/reader_process.h). Its standard input says what to read; voxels go to the file number 3.
+// pellucid-reader and pellucid-image-reader: each reads files of formats whose library it has, for the program that has
+// started it (volume/process/reader_process.h). Its standard input says what to read; voxels go to the file number 3.
 #include <algorithm>
 #include <cstdint>
 #include <iostream>
@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 
 #include "confinement.h"
-#include "foreign/dicom_series.h"
+#include "foreign/foreign_volume.h"
 #include "volume/process/reader_messages.h"
 
 namespace pellucid::reader {
@@ -52,23 +52,23 @@ private:
 };
 
 void answer(const ReaderRequest& request) {
-    confineTo(DicomSeries::folderOf(request.path));
+    confineTo(folderToRead(request.path));
     Limits limits;
     const BeforeFile before = [&](std::uint64_t bytes) { limits.beforeFile(bytes); };
     before(0);
-    DicomSeries series(request.path, request.array, before);
-    if (request.middleOnly) series.keepMiddle();
-    if (request.task == ReaderRequest::Task::Describe) return say(jsonOf(series.contents()));
-    if (request.task == ReaderRequest::Task::List) return say({{"files", series.files()}});
-    const ReaderLayout layout = series.layout(request.step);
+    const std::unique_ptr<ForeignVolume> volume = openForeign(request.path, request.array, before);
+    if (request.middleOnly) volume->keepMiddle();
+    if (request.task == ReaderRequest::Task::Describe) return say(jsonOf(volume->contents()));
+    if (request.task == ReaderRequest::Task::List) return say({{"files", volume->files()}});
+    const ReaderLayout layout = volume->layout(request.step);
     say(jsonOf(layout));
     std::string line;
     if (!std::getline(std::cin, line)) return; // nobody wants them
     const std::uint64_t bytes = bytesOf(layout.layout, request.path);
     limits.setVoxels(bytes);
-    limits.setImage(series.largestImageBytes());
-    before(series.largestFileBytes());
-    series.read(request.step, {mapVoxels(bytes), bytes}, before, progressTeller());
+    limits.setImage(volume->largestImageBytes());
+    before(0);
+    volume->read(request.step, {mapVoxels(bytes), bytes}, before, progressTeller());
     say({{"done", true}});
 }
 

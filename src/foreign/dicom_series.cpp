@@ -22,12 +22,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostFiles = 100'000;
 constexpr int kMostFolders = 8; // below each other
 
-std::uint64_t bytesOfFile(const std::string& path) {
-    std::error_code ec;
-    const auto bytes = fs::file_size(path, ec);
-    return ec ? 0 : bytes;
-}
-
 /// All files in a folder and below, in the order of their names.
 std::vector<std::string> filesBelow(const std::string& folder) {
     std::vector<std::string> files;
@@ -190,13 +184,6 @@ private:
 
 } // namespace
 
-std::string DicomSeries::folderOf(const std::string& path) {
-    std::error_code ec;
-    if (fs::is_directory(path, ec)) return path;
-    const std::string folder = fs::path(path).parent_path().string();
-    return folder.empty() ? "." : folder;
-}
-
 DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, const BeforeFile& before) : m_path(path) {
     std::error_code ec;
     const bool isFolder = fs::is_directory(path, ec);
@@ -222,7 +209,7 @@ DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, con
                 ownUid = frames.front().seriesUid;
                 const std::string own = keyOf(frames.front());
                 std::vector<FileError> others; // of files that nobody has named
-                std::vector<DicomFrame> around = framesIn(pellucid::filesIn(folderOf(path)), before, others);
+                std::vector<DicomFrame> around = framesIn(pellucid::filesIn(folderToRead(path)), before, others);
                 std::erase_if(around, [&](const DicomFrame& frame) { return keyOf(frame) != own; });
                 if (around.size() > 1 && !ownUid.empty()) frames = std::move(around);
             }
@@ -327,12 +314,6 @@ std::vector<std::string> DicomSeries::files() const {
     std::set<std::string> files;
     for (const DicomFrame& frame : m_frames) files.insert(frame.file);
     return {files.begin(), files.end()};
-}
-
-std::uint64_t DicomSeries::largestFileBytes() const {
-    std::uint64_t most = 0;
-    for (const std::string& file : files()) most = std::max(most, bytesOfFile(file));
-    return most;
 }
 
 std::uint64_t DicomSeries::largestImageBytes() const {

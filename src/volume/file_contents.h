@@ -27,6 +27,9 @@ struct FileContents {
 /// multiple of. Throws FileError for a header that cannot be read, UsageError for source.array that is not there.
 FileContents contentsOf(const VolumeSource& source, const JobControl& job = {});
 
+/// Whether the files of a folder are together one volume, or several series of slices: DICOM, or pictures.
+bool isVolumeFolder(const std::string& path);
+
 /// Whether several volumes may be found under a path, which FileContents::arrays names: DICOM.
 bool mayHoldSeries(const std::string& path);
 

@@ -18,8 +18,19 @@ constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
     static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
-                                                    pvtiFormat(), pvdFormat(),       dicomFormat()};
+                                                    pvtiFormat(), pvdFormat(), imageFormat(), dicomFormat()};
     return kFormats;
+}
+
+/// What a file is by its first bytes; empty where it is none, or cannot be read.
+std::string contentOf(const std::string& path) {
+    std::error_code ec;
+    if (!std::filesystem::is_regular_file(path, ec)) return {};
+    try {
+        return describeContent(fileHead(path, 1024));
+    } catch (const FileError&) {
+        return {};
+    }
 }
 
 bool isFolder(const std::string& path) {
@@ -27,20 +38,30 @@ bool isFolder(const std::string& path) {
     return std::filesystem::is_directory(path, ec);
 }
 
-/// Null where neither suffix nor content tells one. A folder that is one volume is DICOM.
+/// Of a folder whose files are together one volume; null for others.
+const VolumeFormat* formatOfFolder(const std::string& path) {
+    static const VolumeFormat kDicom = dicomFormat(), kImages = imageFormat();
+    return holdsDicom(path) ? &kDicom : holdsImages(path) ? &kImages : nullptr;
+}
+
+/// Null where neither suffix nor content tells one.
 const VolumeFormat* findFormat(const std::string& path) {
     const std::string lower = lowerCase(std::filesystem::path(path).filename().string());
     for (const VolumeFormat& format : formats())
         for (const std::string& suffix : format.suffixes)
             if (lower.size() > suffix.size() && lower.ends_with(suffix)) return &format;
-    if (isFolder(path) || isDicom(path)) return &formats().back();
+    if (isFolder(path)) return formatOfFolder(path);
+    const std::string content = contentOf(path);
+    for (const VolumeFormat& format : formats())
+        if ((content == "a DICOM file" && format.name == std::string("DICOM")) ||
+            (content == "a TIFF image" && format.name == std::string("pictures")))
+            return &format;
     return nullptr;
 }
 
 /// Throws FileError where there is none for this suffix.
 const VolumeFormat& formatOf(const std::string& path) {
     if (const VolumeFormat* format = findFormat(path)) return *format;
-    if (const auto unread = unreadFormat(path)) throw *unread;
     const bool named = lowerCase(path).ends_with(".raw");
     const auto suffixes = [](const VolumeFormat& format) { return joined(format.suffixes, " "); };
     throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format", path,
@@ -48,7 +69,7 @@ const VolumeFormat& formatOf(const std::string& path) {
 }
 
 void requireNotEmpty(const std::string& path) {
-    if (isFolder(path) && holdsDicom(path)) return;
+    if (isVolumeFolder(path)) return;
     if (readableFileBytes(path) == 0) throw FileError("the file is empty", path, "copy it again");
 }
 
@@ -169,6 +190,8 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job) {
     return formatOf(source.path).describe(source, job);
 }
 
+bool isVolumeFolder(const std::string& path) { return isFolder(path) && formatOfFolder(path) != nullptr; }
+
 bool mayHoldSeries(const std::string& path) { return isFolder(path) ? holdsDicom(path) : isDicom(path); }
 
 Volume loadMiddleSlice(const VolumeSource& source, const JobControl& job) {
@@ -180,7 +203,7 @@ bool hasVolumeSuffix(const std::string& path) { return !isFolder(path) && findFo
 
 bool mayBeHeaderless(const std::string& path) {
     std::error_code ec;
-    return std::filesystem::is_regular_file(path, ec) && !hasVolumeSuffix(path) && !unreadFormat(path);
+    return std::filesystem::is_regular_file(path, ec) && !hasVolumeSuffix(path);
 }
 
 const std::vector<std::string>& volumeFilePatterns() {

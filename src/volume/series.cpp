@@ -169,7 +169,7 @@ FileList listFiles(const VolumeSource& source) {
         if (list.title.empty() || list.title == "." || list.title == "..")
             list.title = fs::weakly_canonical(path, ec).filename().string();
         if (list.title.empty()) list.title = fs::weakly_canonical(path, ec).parent_path().filename().string();
-        if (!source.raw && holdsDicom(path)) { // its files are slices
+        if (!source.raw && isVolumeFolder(path)) { // its files are slices
             list.paths = {path};
             return list;
         }
@@ -184,8 +184,6 @@ FileList listFiles(const VolumeSource& source) {
     }
     if (!pattern) list.paths = ofOneSuffix(std::move(list.paths), source.raw.has_value(), list.notices);
     if (list.paths.empty()) {
-        for (const std::string& file : all)
-            if (const auto unread = unreadFormat(file)) throw *unread;
         throw FileError(std::string("there is no file ") +
                             (all.empty() && !isFolder ? "" : "of a known volume format ") +
                             (isFolder ? "in this folder" : "with a name of this pattern"),

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <functional>
+#include <thread>
 
 #include <fcntl.h>
 #include <linux/landlock.h>
@@ -48,6 +49,11 @@ TEST_CASE("a confined process reads its folder, and reaches nothing else", "[con
     CHECK(succeeds(in, [&] { return opens(folder.path("link"), O_RDONLY); }));
     CHECK_FALSE(succeeds(in, [&] { return socket(AF_INET, SOCK_STREAM, 0) >= 0; }));
     CHECK_FALSE(succeeds(in, [&] { return fork() >= 0; }));
+    CHECK(succeeds(in, [&] { // a thread is no process
+        bool hasRun = false;
+        std::thread([&] { hasRun = true; }).join();
+        return hasRun;
+    }));
     CHECK_FALSE(succeeds(in, [&] { return unlink(own.c_str()) == 0; }));
     CHECK_FALSE(succeeds(in, [&] { return kill(getppid(), 0) == 0; }));
     CHECK_FALSE(succeeds(in, [&] {

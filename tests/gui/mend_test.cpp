@@ -324,28 +324,6 @@ TEST_CASE("a file of an unknown suffix asks for its layout", "[mend]") {
     w.settle();
 }
 
-TEST_CASE("a file of a format that cannot be read yet is told what it is, and asked nothing", "[mend]") {
-    OpenWindow w;
-    const QTemporaryDir folder;
-    const QString path = folder.filePath("slice_4x4x4_uint8.data"); // whatever its name promises
-    std::ofstream(path.toStdString(), std::ios::binary) << std::string("II*\0", 4) + std::string(60, 'z');
-    QStringList asked;
-    whenAsked([&](QDialog& dialog) {
-        asked << dialog.objectName();
-        if (auto* what = dialog.findChild<QLabel*>("errorWhat")) asked << what->text();
-        if (auto* whatToDo = dialog.findChild<QLabel*>("errorWhatToDo")) asked << whatToDo->text();
-        dialog.reject();
-    });
-    w.opening().openPath(path);
-    REQUIRE(waitFor([&] { return !asked.isEmpty(); }));
-    REQUIRE(asked.size() == 3);
-    CHECK(asked[0] == "errorDialog");
-    CHECK(asked[1].contains("TIFF"));
-    CHECK(asked[2].contains("convert", Qt::CaseInsensitive));
-    CHECK_FALSE(asked[2].contains("raw data"));
-    w.settle();
-}
-
 TEST_CASE("the selection stays with its point through undo", "[mend]") {
     OpenWindow w;
     w.canvas().selectPoint(0);

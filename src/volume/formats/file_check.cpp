@@ -121,27 +121,7 @@ std::string describeContent(std::string_view head) {
     return std::all_of(head.begin(), head.end(), looksLikeText) ? "text" : "binary data";
 }
 
-namespace {
-
-std::optional<FileError> unreadFormat(const std::string& path, std::string_view head) {
-    if (isTiff(head) && !isDicom(head))
-        return FileError("this is a TIFF image, which Pellucid cannot read yet", path,
-                         "convert it to NRRD or MetaImage, for example with ImageJ");
-    return {};
-}
-
-} // namespace
-
-std::optional<FileError> unreadFormat(const std::string& path) {
-    try {
-        return unreadFormat(path, fileHead(path, 1024));
-    } catch (const FileError&) {
-        return {};
-    }
-}
-
 FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head) {
-    if (auto unread = unreadFormat(path, head)) return *unread;
     return {"this is not " + expected + " but " + describeContent(head), path, "give it the suffix of its own format",
             Remedy::GiveRawLayout};
 }

@@ -30,9 +30,6 @@ void requireIndex(const std::string& what, int index, std::uint64_t count, const
 /// What a file seems to be, for error messages: "a PNG image", "text", "binary data", …
 std::string describeContent(std::string_view head);
 
-/// The error for a file that is TIFF by its content, which no reader knows yet; empty for all others.
-std::optional<FileError> unreadFormat(const std::string& path);
-
 /// What is wrong with a file that is not `expected` ("an NRRD file"), by its first 1024 bytes.
 FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head);
 

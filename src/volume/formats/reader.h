@@ -40,12 +40,17 @@ VolumeFormat niftiFormat();
 VolumeFormat vtiFormat();  ///< vtk_image.cpp
 VolumeFormat pvtiFormat(); ///< vtk_image.cpp
 VolumeFormat pvdFormat();  ///< vtk_collection.cpp
-VolumeFormat dicomFormat();
+VolumeFormat dicomFormat(); ///< foreign.cpp
+VolumeFormat imageFormat(); ///< foreign.cpp
 
 /// Whether a file is DICOM by its content.
 bool isDicom(const std::string& path);
 /// Whether a folder is to be opened as DICOM: the first files in it, or in folders below, are.
 bool holdsDicom(const std::string& folder);
+/// Whether a folder is to be opened as a stack of pictures, one a file.
+bool holdsImages(const std::string& folder);
+/// The pictures in a folder that have the most frequent suffix, in the order in which people count.
+std::vector<std::string> imagesIn(const std::string& folder);
 /// The slice in the middle of a DICOM volume.
 Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job);
 

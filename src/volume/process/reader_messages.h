@@ -19,6 +19,7 @@ struct ReaderRequest {
         List,     ///< answered by the names of the files that hold the voxels
         Read      ///< answered by a ReaderLayout; the voxels follow once it has been told to go on
     };
+    std::string program; ///< that is asked: "pellucid-reader" or "pellucid-image-reader"
     Task task = Task::Describe;
     std::string path;        ///< a file or a folder
     std::string array;       ///< the series that is wanted; empty: the one with the most slices

@@ -39,12 +39,12 @@ fs::path& chosenProgram() {
     return program;
 }
 
-fs::path readerProgram() {
+fs::path readerProgram(const std::string& name) {
     if (!chosenProgram().empty()) return chosenProgram();
     std::error_code ec;
     const fs::path folder = fs::read_symlink("/proc/self/exe", ec).parent_path();
-    const fs::path beside = folder / "pellucid-reader";
-    return fs::exists(beside, ec) ? beside : folder / PELLUCID_LIBRARIES_FROM_PROGRAMS / "pellucid-reader";
+    const fs::path beside = folder / name;
+    return fs::exists(beside, ec) ? beside : folder / PELLUCID_LIBRARIES_FROM_PROGRAMS / name;
 }
 
 /// The number of an open file.
@@ -67,17 +67,17 @@ private:
     int m_number = -1;
 };
 
-[[noreturn]] void failToStart(const std::string& why) {
-    throw FileError("the program that reads this format cannot be started (" + why + ")", readerProgram().string(),
+[[noreturn]] void failToStart(const fs::path& program, const std::string& why) {
+    throw FileError("the program that reads this format cannot be started (" + why + ")", program.string(),
                     "close other programs, or install Pellucid again");
 }
 
 /// Two ends of a pipe, closed in programs that are started meanwhile.
 struct Pipe {
     OpenFile out, in; ///< to be read from, to be written to
-    Pipe() {
+    explicit Pipe(const fs::path& program) {
         std::array<int, 2> ends{};
-        if (::pipe2(ends.data(), O_CLOEXEC) != 0) failToStart(std::generic_category().message(errno));
+        if (::pipe2(ends.data(), O_CLOEXEC) != 0) failToStart(program, std::generic_category().message(errno));
         out = OpenFile(ends[0]);
         in = OpenFile(ends[1]);
     }
@@ -86,10 +86,11 @@ struct Pipe {
 /// One pellucid-reader at work. It ends with this.
 class Reader {
 public:
-    Reader(const std::string& path, const JobControl& job) : m_path(path), m_job(job) {
+    Reader(const ReaderRequest& request, const JobControl& job)
+        : m_program(readerProgram(request.program)), m_path(request.path), m_job(job) {
         m_voxels = OpenFile(::memfd_create("pellucid voxels", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-        if (m_voxels.number() < 0) failToStart(std::generic_category().message(errno));
-        Pipe to, from;
+        if (m_voxels.number() < 0) failToStart(m_program, std::generic_category().message(errno));
+        Pipe to(m_program), from(m_program);
         start(to.out.number(), from.in.number());
         m_to = std::move(to.in);
         m_from = std::move(from.out);
@@ -152,15 +153,15 @@ private:
         sigemptyset(&none);
         posix_spawnattr_setsigmask(&attributes, &none);
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-        const std::string program = readerProgram().string();
-        std::string name = "pellucid-reader";
+        const std::string program = m_program.string();
+        std::string name = m_program.filename().string();
         char* const words[] = {name.data(), nullptr};
         const int failure = posix_spawn(&m_process, program.c_str(), &actions, &attributes, words, environ);
         posix_spawn_file_actions_destroy(&actions);
         posix_spawnattr_destroy(&attributes);
         if (failure == 0) return;
         m_process = -1;
-        failToStart(std::generic_category().message(failure));
+        failToStart(m_program, std::generic_category().message(failure));
     }
 
     /// Ends it; returns how it ended.
@@ -219,7 +220,7 @@ private:
         while (::waitpid(m_process, &status, 0) < 0 && errno == EINTR) {
         }
         m_process = -1;
-        if (WIFEXITED(status) && WEXITSTATUS(status) == 127) failToStart("a library is missing");
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 127) failToStart(m_program, "a library is missing");
         if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) failSuddenly("the file takes too long to read");
         throw FileError("the program that reads this format crashed on it" +
                             (WIFSIGNALED(status) ? " (signal " + std::to_string(WTERMSIG(status)) + ")"
@@ -227,6 +228,7 @@ private:
                         m_path, "the file is damaged: copy it again, or convert it with another program");
     }
 
+    const fs::path m_program;
     const std::string m_path;
     const JobControl& m_job;
     OpenFile m_voxels, m_to, m_from;
@@ -244,20 +246,20 @@ ReaderRequest withTask(ReaderRequest request, ReaderRequest::Task task) {
 void setReaderProgram(const fs::path& program) { chosenProgram() = program; }
 
 FileContents describeInProcess(const ReaderRequest& request, const JobControl& job) {
-    Reader reader(request.path, job);
+    Reader reader(request, job);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::Describe)).dump());
     return contentsIn(reader.hear());
 }
 
 std::vector<std::string> listInProcess(const ReaderRequest& request, const JobControl& job) {
-    Reader reader(request.path, job);
+    Reader reader(request, job);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::List)).dump());
     return filesIn(reader.hear());
 }
 
 Volume readInProcess(const VolumeSource& source, const ReaderRequest& request, const JobControl& job) {
     const JobControl reading = job.part(0, 2), taking = job.part(1, 2);
-    Reader reader(request.path, reading);
+    Reader reader(request, reading);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::Read)).dump());
     ReaderLayout answer = layoutIn(reader.hear());
     const std::uint64_t bytes = bytesOf(answer.layout, source.path);

@@ -1,0 +1,139 @@
+#include "foreign/images/image_stack.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "volume/formats/file_check.h"
+#include "volume/formats/reader.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Pages of one file that are looked at: each costs a header, and a chain of pages may lead back.
+constexpr int kMostPages = 100'000;
+
+FileError failure(const std::string& path, const std::string& what) {
+    return {what, path, "copy or write the file again"};
+}
+
+} // namespace
+
+ImageStack::ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before) : m_path(path) {
+    if (!wanted.empty())
+        throw UsageError("there is no array " + inQuotes(wanted), path, "pictures have no names: leave it out");
+    std::error_code ec;
+    const bool isFolder = std::filesystem::is_directory(path, ec);
+    m_files = isFolder ? imagesIn(path) : std::vector<std::string>{path};
+    std::size_t passedOver = 0;
+    for (std::size_t f = 0; f < m_files.size(); ++f) {
+        before(bytesOfFile(m_files[f]));
+        const auto file = openPictures(m_files[f]);
+        for (int page = 0; page < kMostPages && file->goTo(page); ++page) {
+            const PageShape shape = file->shape();
+            if (m_pages.empty()) {
+                m_shape = shape;
+                if (!isFolder)
+                    m_order = pageOrderIn(file->description(), file->pixelsPerUnit(0), file->pixelsPerUnit(1));
+            } else if (!(shape == m_shape)) {
+                if (isFolder)
+                    throw failure(m_files[f], "the pictures of this folder are not alike: this one has " +
+                                                  textOf(shape) + ", the first " + textOf(m_shape));
+                ++passedOver; // a thumbnail, or a coarser copy
+                continue;
+            }
+            m_pages.push_back({f, page});
+            if (isFolder) break; // one picture a file
+        }
+    }
+    if (m_pages.empty()) throw failure(path, "there is no picture in it");
+    if (passedOver > 0)
+        m_notices.push_back(std::to_string(passedOver) + (passedOver == 1 ? " page" : " pages") +
+                            " of another size or type passed over");
+    putInOrder();
+}
+
+/// The numbers of slices, channels and steps, which have to be those of the pages.
+void ImageStack::putInOrder() {
+    const auto pages = static_cast<int>(m_pages.size());
+    const long long named = static_cast<long long>(std::max(m_order.slices, 1)) * m_order.channels * m_order.steps;
+    if (m_order.slices == 0 && m_order.channels == 1 && m_order.steps == 1) {
+        m_order.slices = pages;
+    } else if (named != pages) {
+        m_notices.push_back("the file says that it has " + std::to_string(named) + " pictures, but it has " +
+                            std::to_string(pages) + ": they are shown as slices");
+        m_order.slices = pages;
+        m_order.channels = m_order.steps = 1;
+    }
+    if (m_shape.samples > 1 && m_order.channels > 1)
+        throw failure(m_path, "both pixels and pages have channels, which is not supported");
+    m_slices = m_order.slices;
+}
+
+void ImageStack::keepMiddle() {
+    m_firstSlice = m_slices / 2;
+    m_slices = 1;
+}
+
+const ImageStack::Page& ImageStack::pageAt(int slice, int channel, int step) const {
+    std::size_t at = 0, width = 1;
+    for (const char axis : m_order.axes) {
+        const int index = axis == 'z' ? slice : axis == 'c' ? channel : step;
+        const int size = axis == 'z' ? m_order.slices : axis == 'c' ? m_order.channels : m_order.steps;
+        at += width * static_cast<std::size_t>(index);
+        width *= static_cast<std::size_t>(size);
+    }
+    return m_pages.at(at);
+}
+
+std::uint64_t ImageStack::largestImageBytes() const { return 2 * bytesOf(m_shape); }
+
+ReaderLayout ImageStack::layout(int step) const {
+    requireIndex("time step", step, static_cast<std::uint64_t>(m_order.steps), m_path);
+    ReaderLayout answer;
+    FileLayout& layout = answer.layout;
+    layout.type = m_shape.type;
+    if (m_shape.samples > 1) layout.axes.push_back({m_shape.samples, true});
+    for (const int size : {m_shape.width, m_shape.height, m_slices}) layout.axes.push_back({size});
+    if (m_order.channels > 1) layout.axes.push_back({m_order.channels, true});
+    layout.spacing = m_order.spacing;
+    layout.notices = m_notices;
+    return answer;
+}
+
+FileContents ImageStack::contents() const {
+    FileContents contents = contentsOf(layout(0).layout);
+    contents.steps = m_order.steps;
+    if (m_order.stepSeconds > 0 && m_order.steps > 1) {
+        contents.timeUnit = "s";
+        for (int step = 0; step < m_order.steps; ++step) contents.times.push_back(step * m_order.stepSeconds);
+    }
+    return contents;
+}
+
+void ImageStack::read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const {
+    std::unique_ptr<PictureFile> file;
+    std::size_t opened = m_files.size(); // none
+    const auto bytes = static_cast<std::size_t>(bytesOf(m_shape));
+    const std::size_t pages = static_cast<std::size_t>(m_order.channels) * static_cast<std::size_t>(m_slices);
+    PELLUCID_CHECK(voxels.size() == pages * bytes);
+    std::size_t done = 0;
+    for (int channel = 0; channel < m_order.channels; ++channel)
+        for (int slice = 0; slice < m_slices; ++slice) {
+            const Page& page = pageAt(m_firstSlice + slice, channel, step);
+            if (opened != page.file) {
+                file = openPictures(m_files[page.file]);
+                opened = page.file;
+            }
+            before(bytes);
+            if (!file->goTo(page.page) || !(file->shape() == m_shape))
+                throw failure(m_files[page.file], "the file has changed while it was read");
+            file->read(voxels.subspan(done * bytes, bytes));
+            job.throwIfStopped();
+            job.report(static_cast<double>(++done) / static_cast<double>(pages));
+        }
+}
+
+} // namespace pellucid

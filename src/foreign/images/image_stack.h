@@ -1,0 +1,45 @@
+// Pictures as slices of a volume: TIFF files of many pages, and folders of pictures. Runs in
+// pellucid-image-reader only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "foreign/foreign_volume.h"
+#include "foreign/images/page_words.h"
+#include "foreign/images/picture_file.h"
+
+namespace pellucid {
+
+class ImageStack final : public ForeignVolume {
+public:
+    /// `path`: a TIFF file, or a folder of pictures of one size in the order in which people count. `wanted` has to be
+    /// empty. Throws FileError for what cannot be read, or where pictures are not alike.
+    ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before);
+
+    void keepMiddle() override;
+    FileContents contents() const override;
+    std::vector<std::string> files() const override { return m_files; }
+    ReaderLayout layout(int step) const override;
+    std::uint64_t largestImageBytes() const override;
+    void read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const override;
+
+private:
+    /// A picture: page `page` of file `file`.
+    struct Page {
+        std::size_t file = 0;
+        int page = 0;
+    };
+    const Page& pageAt(int slice, int channel, int step) const;
+    void putInOrder();
+
+    std::string m_path;
+    std::vector<std::string> m_files;
+    std::vector<Page> m_pages; ///< as they follow each other
+    PageOrder m_order;         ///< with all numbers known
+    PageShape m_shape;         ///< of all pages
+    int m_firstSlice = 0, m_slices = 0;
+    std::vector<std::string> m_notices;
+};
+
+} // namespace pellucid

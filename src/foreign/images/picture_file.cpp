@@ -1,0 +1,212 @@
+#include "foreign/images/picture_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <OpenImageIO/imageio.h>
+#include <tiffio.h>
+
+#include "base/text.h"
+#include "volume/formats/file_check.h"
+
+namespace pellucid {
+
+namespace {
+
+FileError failure(const std::string& path, const std::string& what, const std::string& why = "") {
+    return {what + (why.empty() ? "" : " (" + why.substr(0, 300) + ")"), path, "copy or write the file again"};
+}
+
+/// What libtiff said last.
+std::string& tiffComplaint() {
+    static std::string complaint;
+    return complaint;
+}
+
+void keepComplaint(const char*, const char* format, va_list values) {
+    std::array<char, 400> text{};
+    std::vsnprintf(text.data(), text.size(), format, values);
+    tiffComplaint() = text.data();
+}
+
+class TiffFile final : public PictureFile {
+public:
+    explicit TiffFile(const std::string& path) : m_path(path) {
+        TIFFSetErrorHandler(keepComplaint);
+        TIFFSetWarningHandler(nullptr);
+        m_file = TIFFOpen(path.c_str(), "rm"); // not mapped: a page beyond the end would end the process
+        if (m_file == nullptr) throw failure(path, "this TIFF file cannot be read", tiffComplaint());
+    }
+    ~TiffFile() override { TIFFClose(m_file); }
+    TiffFile(const TiffFile&) = delete;
+    TiffFile& operator=(const TiffFile&) = delete;
+
+    bool goTo(int page) override {
+        // One after the other: a search from the beginning for each takes long, and a chain may lead back.
+        if (page == m_page + 1 && page > 0 ? TIFFReadDirectory(m_file) == 0
+                                           : TIFFSetDirectory(m_file, static_cast<tdir_t>(page)) == 0)
+            return false;
+        m_page = page;
+        return true;
+    }
+
+    PageShape shape() override {
+        const auto number = [&](ttag_t tag, std::uint16_t otherwise) {
+            std::uint16_t value = otherwise;
+            TIFFGetFieldDefaulted(m_file, tag, &value);
+            return static_cast<int>(value);
+        };
+        std::uint32_t width = 0, height = 0;
+        TIFFGetField(m_file, TIFFTAG_IMAGEWIDTH, &width);
+        TIFFGetField(m_file, TIFFTAG_IMAGELENGTH, &height);
+        constexpr std::uint32_t kMost = 1u << 30;
+        if (width < 1 || height < 1 || width > kMost || height > kMost)
+            throw failure(m_path, "a page has " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+        PageShape shape;
+        shape.width = static_cast<int>(width);
+        shape.height = static_cast<int>(height);
+        shape.samples = number(TIFFTAG_SAMPLESPERPIXEL, 1);
+        const int bits = number(TIFFTAG_BITSPERSAMPLE, 1), format = number(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+        const int photometric = number(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        if (photometric == PHOTOMETRIC_YCBCR) TIFFSetField(m_file, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+        const std::map<std::pair<int, int>, ValueType> types{
+            {{8, SAMPLEFORMAT_UINT}, ValueType::U8},     {{16, SAMPLEFORMAT_UINT}, ValueType::U16},
+            {{32, SAMPLEFORMAT_UINT}, ValueType::U32},   {{64, SAMPLEFORMAT_UINT}, ValueType::U64},
+            {{8, SAMPLEFORMAT_VOID}, ValueType::U8},     {{16, SAMPLEFORMAT_VOID}, ValueType::U16},
+            {{8, SAMPLEFORMAT_INT}, ValueType::I8},      {{16, SAMPLEFORMAT_INT}, ValueType::I16},
+            {{32, SAMPLEFORMAT_INT}, ValueType::I32},    {{64, SAMPLEFORMAT_INT}, ValueType::I64},
+            {{32, SAMPLEFORMAT_IEEEFP}, ValueType::F32}, {{64, SAMPLEFORMAT_IEEEFP}, ValueType::F64}};
+        const auto type = types.find({bits, format});
+        if (type == types.end() || shape.samples < 1 || shape.samples > 1000)
+            throw failure(m_path, "pixels of " + std::to_string(shape.samples) + " samples of " + std::to_string(bits) +
+                                      " bits are not supported");
+        shape.type = type->second;
+        return shape;
+    }
+
+    void read(std::span<std::byte> to) override {
+        const PageShape page = shape();
+        const std::size_t sample = bytesPerValue(page.type);
+        const int planes = isPlanar() ? page.samples : 1, inPlane = isPlanar() ? 1 : page.samples;
+        std::uint32_t width = static_cast<std::uint32_t>(page.width), height = static_cast<std::uint32_t>(page.height);
+        const bool isTiled = TIFFIsTiled(m_file) != 0;
+        std::uint32_t tileWidth = width, tileHeight = height;
+        if (isTiled) {
+            TIFFGetField(m_file, TIFFTAG_TILEWIDTH, &tileWidth);
+            TIFFGetField(m_file, TIFFTAG_TILELENGTH, &tileHeight);
+        } else {
+            TIFFGetFieldDefaulted(m_file, TIFFTAG_ROWSPERSTRIP, &tileHeight);
+            tileHeight = std::min(tileHeight, height);
+        }
+        if (tileWidth < 1 || tileHeight < 1) throw failure(m_path, "a page has tiles without pixels");
+        const std::size_t pixel = sample * static_cast<std::size_t>(inPlane);
+        const auto tileBytes = static_cast<std::size_t>(isTiled ? TIFFTileSize64(m_file) : TIFFStripSize64(m_file));
+        if (tileBytes < pixel * tileWidth * tileHeight) throw failure(m_path, "a page has tiles of a wrong size");
+        std::vector<char> tile(tileBytes);
+        std::uint32_t number = 0;
+        for (int plane = 0; plane < planes; ++plane)
+            for (std::uint32_t y = 0; y < height; y += tileHeight)
+                for (std::uint32_t x = 0; x < width; x += tileWidth, ++number) {
+                    const std::uint32_t rows = std::min(tileHeight, height - y),
+                                        columns = std::min(tileWidth, width - x);
+                    const auto wanted = static_cast<tmsize_t>(pixel * tileWidth * (isTiled ? tileHeight : rows));
+                    const tmsize_t got = isTiled ? TIFFReadEncodedTile(m_file, number, tile.data(), wanted)
+                                                 : TIFFReadEncodedStrip(m_file, number, tile.data(), wanted);
+                    if (got < wanted)
+                        throw failure(m_path, "page " + std::to_string(m_page) + " cannot be read", tiffComplaint());
+                    for (std::uint32_t row = 0; row < rows; ++row)
+                        put(to, {x, y + row}, columns, tile.data() + pixel * tileWidth * row, page, plane, pixel);
+                }
+    }
+
+    std::string description() override {
+        const char* text = nullptr;
+        return TIFFGetField(m_file, TIFFTAG_IMAGEDESCRIPTION, &text) != 0 && text != nullptr ? text : "";
+    }
+    double pixelsPerUnit(int axis) override {
+        float number = 0;
+        TIFFGetField(m_file, axis == 0 ? TIFFTAG_XRESOLUTION : TIFFTAG_YRESOLUTION, &number);
+        return static_cast<double>(number);
+    }
+
+private:
+    bool isPlanar() const {
+        std::uint16_t planar = PLANARCONFIG_CONTIG;
+        TIFFGetFieldDefaulted(m_file, TIFFTAG_PLANARCONFIG, &planar);
+        return planar == PLANARCONFIG_SEPARATE;
+    }
+    /// A part of a row, of all samples or of those of one plane.
+    static void put(std::span<std::byte> to, std::array<std::uint32_t, 2> at, std::uint32_t columns, const char* from,
+                    const PageShape& page, int plane, std::size_t pixel) {
+        const std::size_t sample = bytesPerValue(page.type), whole = sample * static_cast<std::size_t>(page.samples);
+        std::byte* out =
+            to.data() + (static_cast<std::size_t>(at[1]) * static_cast<std::size_t>(page.width) + at[0]) * whole;
+        if (pixel == whole) {
+            std::memcpy(out, from, columns * pixel);
+            return;
+        }
+        out += static_cast<std::size_t>(plane) * sample;
+        for (std::uint32_t i = 0; i < columns; ++i) std::memcpy(out + i * whole, from + i * sample, sample);
+    }
+
+    std::string m_path;
+    TIFF* m_file = nullptr;
+    int m_page = 0;
+};
+
+class OtherFile final : public PictureFile {
+public:
+    explicit OtherFile(const std::string& path) : m_path(path) {
+        OIIO::attribute("threads", 1);
+        OIIO::ImageSpec asked;
+        asked["oiio:UnassociatedAlpha"] = 1; // numbers as they are stored
+        asked["oiio:RawColor"] = 1;
+        m_file = OIIO::ImageInput::open(path, &asked);
+        if (!m_file) throw failure(path, "this picture cannot be read", OIIO::geterror());
+    }
+    bool goTo(int page) override { return page == 0; }
+    PageShape shape() override {
+        const OIIO::ImageSpec& spec = m_file->spec();
+        if (spec.width < 1 || spec.height < 1 || spec.depth > 1 ||
+            (spec.format != OIIO::TypeDesc::UINT8 && spec.format != OIIO::TypeDesc::UINT16))
+            throw failure(m_path, "pictures of this kind are not supported");
+        return {spec.width, spec.height, spec.nchannels,
+                spec.format == OIIO::TypeDesc::UINT8 ? ValueType::U8 : ValueType::U16};
+    }
+    void read(std::span<std::byte> to) override {
+        const PageShape page = shape();
+        const OIIO::TypeDesc type = page.type == ValueType::U8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
+        if (!m_file->read_image(0, 0, 0, page.samples, type, to.data()) || m_file->has_error())
+            throw failure(m_path, "this picture cannot be read", m_file->geterror());
+    }
+
+private:
+    std::string m_path;
+    std::unique_ptr<OIIO::ImageInput> m_file;
+};
+
+} // namespace
+
+std::uint64_t bytesOf(const PageShape& shape) {
+    return static_cast<std::uint64_t>(shape.width) * static_cast<std::uint64_t>(shape.height) *
+           static_cast<std::uint64_t>(shape.samples) * bytesPerValue(shape.type);
+}
+
+std::string textOf(const PageShape& shape) {
+    return std::to_string(shape.width) + " x " + std::to_string(shape.height) + " pixels, " +
+           std::to_string(shape.samples) + (shape.samples == 1 ? " sample of " : " samples of ") +
+           std::to_string(8 * bytesPerValue(shape.type)) + " bits";
+}
+
+std::unique_ptr<PictureFile> openPictures(const std::string& path) {
+    if (describeContent(fileHead(path, 1024)) == "a TIFF image") return std::make_unique<TiffFile>(path);
+    return std::make_unique<OtherFile>(path);
+}
+
+} // namespace pellucid

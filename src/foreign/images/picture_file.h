@@ -1,0 +1,37 @@
+// A file of pictures, page by page: TIFF by libtiff, which tells what cannot be read; all others by OpenImageIO.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "volume/formats/samples.h"
+
+namespace pellucid {
+
+/// One page. Samples of a pixel lie beside each other.
+struct PageShape {
+    int width = 0, height = 0, samples = 1;
+    ValueType type = ValueType::U8;
+    bool operator==(const PageShape&) const = default;
+};
+std::string textOf(const PageShape& shape); ///< "3 x 2 pixels, 1 sample of 16 bits"
+std::uint64_t bytesOf(const PageShape& shape);
+
+class PictureFile {
+public:
+    virtual ~PictureFile() = default;
+    /// Goes to a page, from 0; false where there is none.
+    virtual bool goTo(int page) = 0;
+    /// Of the page it is at. Throws FileError for pictures of a kind that is not supported.
+    virtual PageShape shape() = 0;
+    virtual void read(std::span<std::byte> to) = 0; ///< the page it is at. Throws FileError
+    virtual std::string description() { return {}; }
+    virtual double pixelsPerUnit([[maybe_unused]] int axis) { return 0; } ///< 0: not known
+};
+
+/// Throws FileError.
+std::unique_ptr<PictureFile> openPictures(const std::string& path);
+
+} // namespace pellucid

@@ -1,0 +1,170 @@
+// Formats that are read by libraries, in processes of their own (src/foreign, app/reader): DICOM by GDCM, pictures as
+// slices by OpenImageIO.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "volume/file_names.h"
+#include "volume/formats/reader.h"
+#include "volume/process/reader_process.h"
+
+namespace pellucid {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader";
+
+bool isFolder(const std::string& path) {
+    std::error_code ec;
+    return fs::is_directory(path, ec);
+}
+
+/// What a file is by its content; empty where it is none, or cannot be read.
+std::string contentOf(const std::string& path) {
+    std::error_code ec;
+    if (!fs::is_regular_file(path, ec)) return {};
+    try {
+        return describeContent(fileHead(path, 1024));
+    } catch (const FileError&) {
+        return {};
+    }
+}
+
+ReaderRequest requestOf(const VolumeSource& source, const char* program) {
+    ReaderRequest request;
+    request.program = program;
+    request.path = source.path;
+    request.array = source.array;
+    request.step = source.step;
+    return request;
+}
+
+/// Throws FileError for a file that is clearly something else, whatever its suffix promises.
+ReaderRequest dicomRequest(const VolumeSource& source) {
+    if (!isFolder(source.path)) {
+        const std::string head = fileHead(source.path, 1024), content = describeContent(head);
+        if (content != "a DICOM file" && content != "binary data") throw notOfFormat("a DICOM file", source.path, head);
+    }
+    return requestOf(source, kOfDicom);
+}
+ReaderRequest imageRequest(const VolumeSource& source) {
+    if (!isFolder(source.path)) {
+        const std::string head = fileHead(source.path, 1024);
+        if (describeContent(head) != "a TIFF image") throw notOfFormat("a TIFF image", source.path, head);
+    }
+    return requestOf(source, kOfImages);
+}
+
+template <auto requestFor>
+FileContents describe(const VolumeSource& source, const JobControl& job) {
+    return describeInProcess(requestFor(source), job);
+}
+template <auto requestFor>
+Volume read(const VolumeSource& source, const JobControl& job) {
+    return readInProcess(source, requestFor(source), job);
+}
+template <auto requestFor>
+std::vector<std::string> dataFiles(const std::string& path) {
+    VolumeSource source;
+    source.path = path;
+    return listInProcess(requestFor(source), {});
+}
+
+/// Whether a TIFF file has a second page: a stack by itself. By its first directory (TIFF 6.0, section 2; BigTIFF has
+/// numbers of 8 bytes).
+bool hasSeveralPages(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::array<char, 16> head{};
+    in.read(head.data(), head.size());
+    const bool isBigEndian = head[0] == 'M', isLarge = head[2] == '+' || head[3] == '+';
+    const auto number = [&](const char* bytes, std::size_t count) {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            value = value << 8 | static_cast<unsigned char>(bytes[isBigEndian ? i : count - 1 - i]);
+        return value;
+    };
+    const std::size_t counts = isLarge ? 8 : 2, entry = isLarge ? 20 : 12, offset = isLarge ? 8 : 4;
+    const std::uint64_t first = isLarge ? number(head.data() + 8, 8) : number(head.data() + 4, 4);
+    in.seekg(static_cast<std::streamoff>(first));
+    in.read(head.data(), static_cast<std::streamsize>(counts));
+    const std::uint64_t entries = number(head.data(), counts);
+    if (!in || entries > 65535) return false;
+    in.seekg(static_cast<std::streamoff>(entries * entry), std::ios::cur);
+    in.read(head.data(), static_cast<std::streamsize>(offset));
+    return in && number(head.data(), offset) != 0;
+}
+
+/// Files below `folder`, up to `count` of them, until `found` is true of one.
+bool anyBelow(const std::string& folder, int count, const auto& found) {
+    constexpr int kMostFolders = 8;
+    std::error_code ec;
+    for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ec);
+         !ec && it != fs::recursive_directory_iterator() && count > 0; it.increment(ec)) {
+        if (it.depth() >= kMostFolders) it.disable_recursion_pending();
+        if (!it->is_regular_file(ec)) continue;
+        --count;
+        if (found(it->path().string())) return true;
+    }
+    return false;
+}
+
+bool isTiffName(const std::string& suffix) { return suffix == ".tif" || suffix == ".tiff"; }
+
+} // namespace
+
+bool isDicom(const std::string& path) { return contentOf(path) == "a DICOM file"; }
+
+bool holdsDicom(const std::string& folder) {
+    constexpr int kLookedAt = 64;
+    // A folder of other volumes may have folders of DICOM in it.
+    const bool hasVolumes = std::ranges::any_of(filesIn(folder), [](const std::string& path) {
+        return hasVolumeSuffix(path) && !isTiffName(volumeSuffix(path)) && !isDicom(path);
+    });
+    return !hasVolumes && anyBelow(folder, kLookedAt, isDicom);
+}
+
+std::vector<std::string> imagesIn(const std::string& folder) {
+    std::map<std::string, std::vector<std::string>> bySuffix;
+    for (const std::string& path : filesIn(folder)) {
+        const std::string suffix = volumeSuffix(path);
+        for (const char* known : {".tif", ".tiff", ".png", ".jpg", ".jpeg", ".bmp"})
+            if (suffix == known) bySuffix[suffix].push_back(path);
+    }
+    std::vector<std::string> most;
+    for (auto& [suffix, paths] : bySuffix)
+        if (paths.size() > most.size()) most = std::move(paths);
+    std::ranges::sort(most, countsBefore);
+    return most;
+}
+
+bool holdsImages(const std::string& folder) {
+    const std::vector<std::string> images = imagesIn(folder);
+    if (images.size() < 2 || hasSeveralPages(images.front())) return false;
+    return std::ranges::none_of(filesIn(folder), [](const std::string& path) {
+        return hasVolumeSuffix(path) && !isTiffName(volumeSuffix(path));
+    });
+}
+
+Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job) {
+    ReaderRequest request = dicomRequest(source);
+    request.middleOnly = true;
+    return readInProcess(source, request, job);
+}
+
+VolumeFormat dicomFormat() {
+    return {"DICOM",
+            {".dcm", ".dicom", ".ima"},
+            describe<dicomRequest>,
+            read<dicomRequest>,
+            dataFiles<dicomRequest>};
+}
+
+VolumeFormat imageFormat() {
+    return {"pictures", {".tif", ".tiff"}, describe<imageRequest>, read<imageRequest>, dataFiles<imageRequest>};
+}
+
+} // namespace pellucid

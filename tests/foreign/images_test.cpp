@@ -1,0 +1,195 @@
+// TIFF stacks and folders of pictures through pellucid-image-reader.
+#include <catch2/catch.hpp>
+
+#include <cstring>
+#include <filesystem>
+
+#include "support/dicom_writer.h"
+#include "support/temp_folder.h"
+#include "support/tiff_writer.h"
+#include "volume/file_contents.h"
+#include "volume/loader.h"
+#include "volume/series.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+VolumeSource at(const std::string& path) {
+    VolumeSource source;
+    source.path = path;
+    return source;
+}
+
+/// Pages of 3 x 2 pixels of 16 bits: 100 n, 100 n + 1, …
+std::vector<TiffPage> pages(int count, const std::string& description = "", int pixelsPerUnit = 0) {
+    std::vector<TiffPage> all;
+    for (int n = 0; n < count; ++n) {
+        TiffPage page;
+        std::vector<int> values;
+        for (int i = 0; i < 6; ++i) values.push_back(100 * n + i);
+        page.pixels = words(values);
+        if (n == 0) page.description = description;
+        page.pixelsPerUnit = pixelsPerUnit;
+        all.push_back(page);
+    }
+    return all;
+}
+
+bool hasNotice(const Volume& volume, const std::string& text) {
+    return std::ranges::any_of(volume.notices,
+                               [&](const auto& notice) { return notice.find(text) != std::string::npos; });
+}
+
+} // namespace
+
+TEST_CASE("pages of a TIFF file are slices", "[images]") {
+    const TempFolder folder;
+    for (const char* name : {"a.tif", "stack"}) { // the name does not matter
+        const Volume volume = loadVolume(at(folder.write(name, tiffFile(pages(4)))));
+        CHECK(volume.dims() == Int3(3, 2, 4));
+        CHECK(volume.sampleType() == SampleType::U16);
+        CHECK(volume.geometry().spacing == Vec3(1));
+        CHECK(volume.notices.empty());
+        for (int z = 0; z < 4; ++z)
+            for (int i = 0; i < 6; ++i) CHECK(volume.value(static_cast<std::size_t>(6 * z + i)) == 100 * z + i);
+    }
+}
+
+TEST_CASE("numbers of TIFF files keep their type", "[images]") {
+    const TempFolder folder;
+    const auto load = [&](int bits, int format, const std::string& pixels) {
+        TiffPage page;
+        page.width = 2;
+        page.height = 1;
+        page.bits = bits;
+        page.format = format;
+        page.pixels = pixels;
+        return loadVolume(at(folder.write("t.tif", tiffFile({page}))));
+    };
+    const auto bytesOf = [](auto a, auto b) {
+        std::string bytes(2 * sizeof a, '\0');
+        std::memcpy(bytes.data(), &a, sizeof a);
+        std::memcpy(bytes.data() + sizeof a, &b, sizeof b);
+        return bytes;
+    };
+    const auto check = [&](int bits, int format, auto a, auto b, SampleType type) {
+        const Volume volume = load(bits, format, bytesOf(a, b));
+        CHECK(volume.sampleType() == type);
+        CHECK(volume.value(0) == static_cast<double>(a));
+        CHECK(volume.value(1) == static_cast<double>(b));
+    };
+    check(8, 1, std::uint8_t{3}, std::uint8_t{255}, SampleType::U8);
+    check(8, 2, std::int8_t{-3}, std::int8_t{127}, SampleType::I8);
+    check(16, 1, std::uint16_t{3}, std::uint16_t{65535}, SampleType::U16);
+    check(16, 2, std::int16_t{-300}, std::int16_t{300}, SampleType::I16);
+    check(32, 1, std::uint32_t{3}, std::uint32_t{4000000000}, SampleType::U32);
+    check(32, 2, std::int32_t{-70000}, std::int32_t{70000}, SampleType::I32);
+    check(32, 3, 0.25f, -1e30f, SampleType::F32);
+    check(64, 3, 0.1, -1e300, SampleType::F64);
+}
+
+TEST_CASE("colours of a TIFF file are components", "[images]") {
+    const TempFolder folder;
+    TiffPage page;
+    page.bits = 8;
+    page.samples = 3;
+    for (int i = 0; i < 18; ++i) page.pixels += static_cast<char>(10 * i);
+    const std::string path = folder.write("rgb.tif", tiffFile({page, page}));
+    CHECK(contentsOf(at(path)).components == 3);
+    VolumeSource blue = at(path);
+    blue.component = 2;
+    CHECK(loadVolume(blue).value(7) == 50); // second pixel of the second page: 10 · (3 + 2)
+}
+
+TEST_CASE("ImageJ says how pages follow each other and how far pixels are apart", "[images]") {
+    const TempFolder folder;
+    // Two channels, three slices, two steps: pages go by channel, slice, step. 4 pixels in a micrometre.
+    const std::string description = "ImageJ=1.53t\nimages=12\nchannels=2\nslices=3\nframes=2\nhyperstack=true\n"
+                                    "unit=micron\nfinterval=0.5\nspacing=2.5\nloop=false\n";
+    const std::string path = folder.write("hyper.tif", tiffFile(pages(12, description, 4)));
+    const FileContents contents = contentsOf(at(path));
+    CHECK(contents.dims == Int3(3, 2, 3));
+    CHECK(contents.components == 2);
+    CHECK(contents.steps == 2);
+    CHECK(contents.times == std::vector<double>{0, 0.5});
+    for (int step = 0; step < 2; ++step)
+        for (int channel = 0; channel < 2; ++channel) {
+            VolumeSource source = at(path);
+            source.step = step;
+            source.component = channel;
+            const Volume volume = loadVolume(source);
+            CHECK(volume.geometry().spacing == Vec3(0.25, 0.25, 2.5));
+            for (int z = 0; z < 3; ++z)
+                CHECK(volume.value(static_cast<std::size_t>(6 * z)) == 100 * (channel + 2 * (z + 3 * step)));
+        }
+    const SeriesListing listing = listSeries(at(path));
+    CHECK(listing.frames.size() == 2);
+    // A file that has other pages than it says shows them all.
+    const Volume fewer = loadVolume(at(folder.write("cut.tif", tiffFile(pages(5, description, 4)))));
+    CHECK(fewer.dims().z == 5);
+    CHECK(hasNotice(fewer, "says that it has 12 pictures, but it has 5"));
+}
+
+TEST_CASE("OME-XML says how pages follow each other and how far pixels are apart", "[images]") {
+    const TempFolder folder;
+    const std::string description =
+        "<?xml version=\"1.0\"?><OME xmlns=\"http://www.openmicroscopy.org/Schemas/OME/2016-06\"><Image ID=\"Image:0\">"
+        "<Pixels ID=\"Pixels:0\" DimensionOrder=\"XYZCT\" Type=\"uint16\" SizeX=\"3\" SizeY=\"2\" SizeZ=\"2\" "
+        "SizeC=\"2\" "
+        "SizeT=\"1\" PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"1500\" "
+        "PhysicalSizeZUnit=\"nm\"/></Image>"
+        "</OME>";
+    const std::string path = folder.write("a.ome.tif", tiffFile(pages(4, description)));
+    VolumeSource source = at(path);
+    source.component = 1;
+    const Volume volume = loadVolume(source);
+    CHECK(volume.dims() == Int3(3, 2, 2));
+    CHECK(volume.geometry().spacing == Vec3(0.5, 0.5, 1.5));
+    CHECK(volume.value(0) == 200); // slices first, then channels
+    CHECK(volume.value(6) == 300);
+}
+
+TEST_CASE("a folder of pictures is one volume, in the order in which people count", "[images]") {
+    const TempFolder folder;
+    fs::create_directory(folder.path("slices"));
+    for (const int n : {1, 2, 10})
+        folder.write("slices/s" + std::to_string(n) + ".tif", tiffFile({pages(n + 1).back()}));
+    folder.write("slices/notes.txt", "Three slices.");
+    const SeriesListing listing = listSeries(at(folder.path("slices")));
+    REQUIRE(listing.frames.size() == 1);
+    const Volume volume = loadVolume(listing.frames[0].source);
+    CHECK(volume.dims() == Int3(3, 2, 3));
+    CHECK(volume.value(0) == 100);
+    CHECK(volume.value(6) == 200);
+    CHECK(volume.value(12) == 1000);
+    // A picture of another size is named.
+    TiffPage other;
+    other.width = 1;
+    other.height = 1;
+    other.pixels = words({1});
+    folder.write("slices/s11.tif", tiffFile({other}));
+    CHECK_THROWS_WITH(loadVolume(at(folder.path("slices"))), Contains("not alike") && Contains("s11.tif"));
+    // Files of several pages are volumes by themselves: frames of a series.
+    fs::create_directory(folder.path("frames"));
+    for (const char* name : {"frames/t1.tif", "frames/t2.tif"}) folder.write(name, tiffFile(pages(3)));
+    CHECK(listSeries(at(folder.path("frames"))).frames.size() == 2);
+}
+
+TEST_CASE("what is wrong with a TIFF file is told", "[images]") {
+    const TempFolder folder;
+    const std::string whole = tiffFile(pages(3));
+    CHECK_THROWS_WITH(loadVolume(at(folder.write("cut.tif", whole.substr(0, 20)))), Contains("cut.tif"));
+    CHECK_THROWS_WITH(loadVolume(at(folder.write("text.tif", "Dear reader"))), Contains("not a TIFF image but text"));
+    // The pixels of the last page lie beyond the end of the file.
+    std::vector<TiffPage> broken = pages(2);
+    broken[1].height = 2000;
+    CHECK_THROWS_AS(loadVolume(at(folder.write("broken.tif", tiffFile({broken[1]})))), FileError);
+    VolumeSource named = at(folder.write("a.tif", whole));
+    named.array = "x";
+    CHECK_THROWS_AS(loadVolume(named), UsageError);
+}

@@ -1,0 +1,71 @@
+// Writes TIFF files of pages that are not packed, as TIFF 6.0 describes them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pellucid::test {
+
+struct TiffPage {
+    int width = 3, height = 2, bits = 16, samples = 1;
+    int format = 1;          ///< 1: unsigned, 2: signed, 3: floats
+    std::string pixels;      ///< bytes, little endian
+    std::string description; ///< ImageDescription; empty: none
+    int pixelsPerUnit = 0;   ///< XResolution and YResolution; 0: none
+};
+
+inline std::string tiffFile(const std::vector<TiffPage>& pages) {
+    const auto number = [](std::uint64_t value, int bytes) {
+        std::string text;
+        for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 255);
+        return text;
+    };
+    std::string file = std::string("II*\0", 4) + number(0, 4);
+    std::size_t link = 4; // where the next directory's place is to be written
+    for (const TiffPage& page : pages) {
+        struct Entry {
+            int tag, type;
+            std::uint64_t count, value;
+        };
+        std::vector<Entry> entries;
+        const auto put = [&](const std::string& bytes) {
+            const std::size_t at = file.size();
+            file += bytes;
+            if (file.size() % 2 != 0) file += '\0';
+            return at;
+        };
+        const std::size_t pixels = put(page.pixels);
+        entries.push_back({256, 4, 1, static_cast<std::uint64_t>(page.width)});
+        entries.push_back({257, 4, 1, static_cast<std::uint64_t>(page.height)});
+        std::string bits;
+        for (int s = 0; s < page.samples; ++s) bits += number(static_cast<std::uint64_t>(page.bits), 2);
+        if (page.samples <= 2) bits.resize(4);
+        entries.push_back({258, 3, static_cast<std::uint64_t>(page.samples),
+                           page.samples > 2 ? put(bits) : static_cast<std::uint64_t>(page.bits)});
+        entries.push_back({259, 3, 1, 1});
+        entries.push_back({262, 3, 1, page.samples >= 3 ? 2u : 1u});
+        if (!page.description.empty())
+            entries.push_back({270, 2, page.description.size() + 1, put(page.description + '\0')});
+        entries.push_back({273, 4, 1, pixels});
+        entries.push_back({277, 3, 1, static_cast<std::uint64_t>(page.samples)});
+        entries.push_back({278, 4, 1, static_cast<std::uint64_t>(page.height)});
+        entries.push_back({279, 4, 1, page.pixels.size()});
+        if (page.pixelsPerUnit > 0)
+            for (const int tag : {282, 283})
+                entries.push_back(
+                    {tag, 5, 1, put(number(static_cast<std::uint64_t>(page.pixelsPerUnit), 4) + number(1, 4))});
+        entries.push_back({339, 3, 1, static_cast<std::uint64_t>(page.format)});
+        const std::size_t directory = file.size();
+        file.replace(link, 4, number(directory, 4));
+        file += number(entries.size(), 2);
+        for (const Entry& entry : entries)
+            file += number(static_cast<std::uint64_t>(entry.tag), 2) +
+                    number(static_cast<std::uint64_t>(entry.type), 2) + number(entry.count, 4) + number(entry.value, 4);
+        link = file.size();
+        file += number(0, 4);
+    }
+    return file;
+}
+
+} // namespace pellucid::test
