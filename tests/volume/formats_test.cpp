@@ -758,7 +758,8 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
     CHECK(volumeFilePatterns() == std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz",
-                                                           "*.hdr", "*.hdr.gz", "*.vti", "*.pvti", "*.pvd"});
+                                                           "*.hdr", "*.hdr.gz", "*.vti", "*.pvti", "*.pvd", "*.tif",
+                                                           "*.tiff", "*.dcm", "*.dicom", "*.ima"});
 }
 
 TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {
@@ -772,11 +773,11 @@ TEST_CASE("the files of a volume are the one named and the one with its data", "
     };
     const std::string nhdr = folder.write("a.nhdr", "NRRD0004\ntype: uchar\ndata file: ./a.raw\n\n");
     const std::string mhd = folder.write("a.mhd", "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
-                                                  "ElementDataFile = /elsewhere/a.raw\n");
+                                                  "ElementDataFile = data/a.raw\n");
     const std::string nrrd = folder.write("a.nrrd", "NRRD0004\ntype: uchar\n\n");
     CHECK(files(nhdr) == Paths{nhdr, folder.path("./a.raw")});
     CHECK(files(nhdr, RawLayout{}) == Paths{nhdr});
-    CHECK(files(mhd) == Paths{mhd, "/elsewhere/a.raw"});
+    CHECK(files(mhd) == Paths{mhd, folder.path("data/a.raw")});
     CHECK(files(nrrd) == Paths{nrrd, nrrd});
     CHECK(files("missing.nrrd") == Paths{"missing.nrrd"});
     CHECK(files("a.unknown") == Paths{"a.unknown"});
