@@ -183,7 +183,7 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job) {
         FileContents contents;
         contents.dims = source.raw->dims;
         contents.type = source.raw->type;
-        contents.steps = rawSteps(source);
+        contents.steps = rawSteps(source, job);
         return contents;
     }
     requireNotEmpty(source.path);

@@ -11,6 +11,7 @@ Needs Python 3.8 and nothing beside it.
 
 import argparse
 import base64
+import bz2
 import gzip
 import json
 import math
@@ -43,7 +44,8 @@ WORDS = [b"LOCAL", b"LIST", b"LIST 2", b"SKIPLIST", b"slice%03d.raw 1 4 1", b"%s
          b"(1,0,0)", b"(0,0,0)", b"(nan,0,0)", b"(1,0", b"(1)", b"(" * 300, b"\xff\xfe", b"\0", b"x" * 300,
          b"x" * 70000]
 NRRD_LINES = [b"line skip: 1", b"byte skip: -1", b"byte skip: 3", b"line skip: 9223372036854775807", b"data file: LIST",
-              b"data file: data.raw", b"endian: big", b"encoding: text", b"space: RAS", b"space dimension: 0",
+              b"data file: data.raw", b"data file: LIST 2", b"data file: slab%d.raw 0 1 1", b"data file: slab%d.raw 0 9223372036854775807 1 3",
+              b"endian: big", b"encoding: text", b"encoding: bzip2", b"space: RAS", b"space dimension: 0",
               b"space dimension: 9", b"space origin: (nan,0,0)", b"kinds: vector domain domain", b"axis mins: 0 nan 1",
               b"axis maxs: 1 1 1", b"centers: node cell ???", b"old min: nan", b"block size: 7", b"# \xff",
               b"measurement frame: (1,0,0) (0,1,0) (0,0,1)", b"labels: \"a\" \"b", b"units: \"",
@@ -113,6 +115,10 @@ def nhdr_seeds():
         nrrd((b"uint8", b"3", b"2 3 4", b"byte skip: 4\n", b"gzip"), last=b"data file: data.gz\n"),
         nrrd((b"uint8", b"3", b"2 3 4", b"line skip: 1\n", b"text"), last=b"data file: data.txt\n"),
         nrrd((b"uint8", b"3", b"2 3 4", b"byte skip: -1\n", b"raw"), last=b"data file: ./data.raw\n"),
+        nrrd((b"uint8", b"3", b"2 3 4", b"byte skip: 1\n", b"raw"), last=b"data file: slab%d.raw 0 1 1 3\n"),
+        nrrd((b"uint8", b"4", b"2 3 2 2", b"byte skip: 1\n", b"raw"),
+             last=b"data file: LIST\nslab0.raw\nslab1.raw\n"),
+        nrrd((b"uint8", b"3", b"2 3 4", b"", b"bzip2"), last=b"data file: data.bz2\n"),
     ]
 
 
@@ -446,6 +452,8 @@ def write_companions(folder):
     """What the detached headers name, and what they come to name."""
     for name, content in (("data.raw", b"head" + VALUES), ("data.gz", gzip.compress(b"head" + VALUES, mtime=0)),
                           ("data.z", zlib.compress(VALUES)), ("data.txt", b"a line\n" + text_data(24)),
+                          ("slab0.raw", b"-" + VALUES[:12]), ("slab1.raw", b"-" + VALUES[12:]),
+                          ("data.bz2", bz2.compress(VALUES)),
                           ("step.vti", vti_seeds()[0].header + vti_seeds()[0].data)):
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)

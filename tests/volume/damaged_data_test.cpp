@@ -117,6 +117,85 @@ TEST_CASE("gzip in several members is read, and needs no more of them than are w
     }
 }
 
+TEST_CASE("bzip2 data in one stream or several, in steps, after skipped bytes", "[damaged-data]") {
+    const TempFolder folder;
+    const auto file = [&](const std::string& packed, bool steps = false, const std::string& fields = "") {
+        std::string text = nrrd(packed, steps, fields);
+        return folder.write("a.nrrd", text.replace(text.find("gzip"), 4, "bzip2"));
+    };
+    const std::string whole = bzipped("abcdef", 1), two = bzipped("abc") + bzipped("def"), four = two + bzipped("");
+    for (const std::string& packed : {whole, two, four, two + std::string(5, '\0'), two + "behind"}) {
+        CHECK(letters(loadVolume(sourceOf(file(packed)))) == "abcdef");
+        for (const int step : {2, 0, 1})
+            CHECK(letters(loadVolume(sourceOf(file(packed, true), step))) ==
+                  std::string("abcdef").substr(2 * static_cast<std::size_t>(step), 2));
+    }
+    CHECK(letters(loadVolume(sourceOf(file(bzipped("xyz") + two, false, "byte skip: 3\n")))) == "abcdef");
+    CHECK(letters(loadVolume(sourceOf(file(bzipped("xyz") + two, false, "byte skip: -1\n")))) == "abcdef");
+    CHECK_THAT(errorOf(sourceOf(file(two + "behind", false, "byte skip: -1\n"))), Contains("followed by"));
+    for (std::size_t kept = 0; kept < whole.size(); ++kept) {
+        CAPTURE(kept);
+        CHECK_THAT(errorOf(sourceOf(file(whole.substr(0, kept)))),
+                   Contains("compressed data is cut off") || Contains("compressed data ends"));
+    }
+    CHECK_THAT(errorOf(sourceOf(file(bzipped("abcde")))), Contains("ends after 5 of 6 bytes"));
+    CHECK_THAT(errorOf(sourceOf(file(gzipped("abcdef")))), Contains("is damaged after 0"));
+    // Each bit of a short stream: but for the size of blocks and the last bits, which are none of the data's.
+    int refused = 0;
+    for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+        std::string bytes = whole;
+        bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ (1 << bit % 8));
+        CAPTURE(bit);
+        const std::string path = file(bytes);
+        if (errorOf(sourceOf(path)) != "no error")
+            ++refused;
+        else
+            REQUIRE(letters(loadVolume(sourceOf(path))) == "abcdef");
+    }
+    CHECK(refused > static_cast<int>(8 * whole.size()) - 16);
+    std::string claims = nrrd(whole);
+    claims.replace(claims.find("gzip"), 4, "bzip2");
+    claims.replace(claims.find("sizes: 6"), 8, "sizes: 2000000000");
+    CHECK_THAT(errorOf(sourceOf(folder.write("a.nrrd", claims))), Contains("cannot hold"));
+}
+
+TEST_CASE("a headerless file may be gzip, if what it unpacks to has the size of its layout", "[damaged-data]") {
+    const TempFolder folder;
+    const std::string bytes = bytesOf(std::vector<std::uint16_t>{258, 3, 4, 5, 6, 65535});
+    const auto source = [&](const std::string& content, const std::string& layout, std::uint64_t skip = 0) {
+        VolumeSource raw = sourceOf(folder.write("a.raw.gz", content));
+        raw.raw = parseRawLayout(layout);
+        raw.raw->skipBytes = skip;
+        return raw;
+    };
+    for (const std::string& packed : {gzipped("head" + bytes), gzipped("he") + gzipped("ad" + bytes)}) {
+        const Volume volume = loadVolume(source(packed, "3,2,1,u16", 4));
+        CHECK(volume.format == "raw");
+        CHECK(volume.value(0) == 258);
+        CHECK(volume.value(5) == 65535);
+        CHECK(loadVolume(source(packed, "3,2,1,u16,big", 4)).value(0) == 513); // 1·256 + 2 the other way round
+        CHECK(loadVolume(source(packed, "16,1,1,u8")).value(0) == 'h');
+    }
+    // Steps, which have to be asked for.
+    VolumeSource steps = source(gzipped("head" + bytes), "2,1,1,u16", 4);
+    CHECK_THAT(errorOf(steps), Contains("that unpack to 16, but"));
+    steps.frames = FrameRange{};
+    CHECK(listSeries(steps).frames.size() == 3);
+    CHECK(loadVolume(listSeries(steps).frames[2].source).value(1) ==
+          65535); // though (36 − 4) / 4 packed steps fit, too
+    // Its own size comes first: then it is no gzip, whatever it begins with.
+    const std::string packed = gzipped(bytes);
+    const std::string own = std::to_string(packed.size()) + ",1,1,u8";
+    CHECK(loadVolume(source(packed, own)).value(0) == 0x1f);
+    const std::string almost = std::string("\x1f\x8b") + std::string(10, 'x');
+    CHECK(loadVolume(source(almost, "12,1,1,u8")).value(1) == 0x8b);
+    CHECK_THAT(errorOf(source(almost, "13,1,1,u8")), Contains("the file has 12 bytes, but"));
+    CHECK_THAT(errorOf(source(packed.substr(0, packed.size() - 3), "3,2,1,u16")), Contains("cut off after 12"));
+    CHECK_THAT(errorOf(source(packed + "x", "3,2,1,u16")), Contains("followed by something else"));
+    CHECK_THAT(errorOf(source(packed, "4,2,1,u16")), Contains("that unpack to 12, but"));
+    CHECK_THAT(errorOf(source(packed, "2000000000,2000000000,1,u16")), Contains("that unpack to 12, but"));
+}
+
 TEST_CASE("what stands behind compressed data is left alone, unless it says where they end", "[damaged-data]") {
     const TempFolder folder;
     const std::string packed = gzipped("abcdef");

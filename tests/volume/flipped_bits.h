@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "packers.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
 #include "volume_files.h"
@@ -23,6 +24,7 @@ struct PackedFile {
     std::size_t begin = 0, end = 0;
     int steps = 1;                              ///< time steps, each of which is read alone
     std::string headerSuffix = "", header = ""; ///< beside it, where it has no header of its own: "DATA" is its name
+    std::string raw = "";                       ///< how it is laid out, where it has none at all
 };
 
 /// What reading a damaged file has come to.
@@ -79,6 +81,15 @@ inline std::vector<PackedFile> packedFiles(int side) {
     add("NRRD gzip, detached", ".raw.gz", "", gzipped(one));
     files.back().headerSuffix = ".nhdr";
     files.back().header = nrrd + "3\nsizes: " + sizes + "\ndata file: DATA\n";
+    const std::string bzip2 = "NRRD0004\ntype: short\nendian: little\nencoding: bzip2\ndimension: ";
+    add("NRRD bzip2", ".nrrd", bzip2 + "3\nsizes: " + sizes + "\n\n", bzipped(one));
+    add("NRRD bzip2, steps", ".nrrd", bzip2 + "4\nsizes: " + sizes + " 4\n\n",
+        bzipped(four.substr(0, 5000)) + bzipped(four.substr(5000)), kSteps);
+    add("raw gzip", ".raw.gz", "", gzipped(one));
+    files.back().raw = text + "," + text + "," + text + ",i16";
+    add("NRRD gzip, list of files", ".raw.gz", "", gzipped(one));
+    files.back().headerSuffix = ".nhdr";
+    files.back().header = nrrd + "3\nsizes: " + sizes + "\ndata file: LIST 3\nDATA\n";
 
     const std::string meta = "ObjectType = Image\nElementType = MET_SHORT\nCompressedData = True\n";
     const std::string local = "\nElementDataFile = LOCAL\n";
@@ -148,6 +159,7 @@ private:
         VolumeSource source;
         source.path = m_folder.write(data, bytes);
         source.step = step;
+        if (!m_file.raw.empty()) source.raw = parseRawLayout(m_file.raw);
         if (!m_file.header.empty()) {
             std::string header = m_file.header;
             source.path = m_folder.write(name + m_file.headerSuffix, header.replace(header.find("DATA"), 4, data));

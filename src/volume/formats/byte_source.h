@@ -35,9 +35,8 @@ private:
     const JobControl& m_job;
 };
 
-/// The unpacked bytes of the deflate stream at byte `start` of a file: gzip, also of several members; with `zlib` it
-/// may be a zlib stream. Bytes may be damaged until the member that holds them has ended: see soundBytes().
-class InflatedBytes final : public ByteSource {
+/// The unpacked bytes of members with checksums, one behind the other to the end of a file.
+class UnpackedBytes : public ByteSource {
 public:
     enum class End {
         None,     ///< there is more
@@ -48,6 +47,17 @@ public:
         Damaged   ///< what there is does not unpack
     };
 
+    virtual std::uint64_t decoded() const = 0; ///< bytes that have come out
+    /// How many of them lie in members that have ended with the right checksum and length.
+    virtual std::uint64_t soundBytes() const = 0;
+    /// How the stream ended; None before read() has returned fewer bytes than it was asked for.
+    virtual End end() const = 0;
+};
+
+/// The unpacked bytes of the deflate stream at byte `start` of a file: gzip, also of several members; with `zlib` it
+/// may be a zlib stream. Bytes may be damaged until the member that holds them has ended: see soundBytes().
+class InflatedBytes final : public UnpackedBytes {
+public:
     InflatedBytes(const std::string& path, std::uint64_t start, bool zlib, const JobControl& job);
     ~InflatedBytes() override;
     InflatedBytes(const InflatedBytes&) = delete;
@@ -64,12 +74,9 @@ public:
     /// Goes on at `place` of the stream of this file.
     InflatedBytes(const std::string& path, const Place& place, const JobControl& job);
     Place place() const;
-    std::uint64_t decoded() const { return m_decoded; } ///< bytes that have come out
-    /// How many of them lie in members that have ended with the right checksum and length.
-    std::uint64_t soundBytes() const { return m_sound; }
-
-    /// How the stream ended; None before read() has returned fewer bytes than it was asked for.
-    End end() const { return m_end; }
+    std::uint64_t decoded() const override { return m_decoded; }
+    std::uint64_t soundBytes() const override { return m_sound; }
+    End end() const override { return m_end; }
 
 private:
     bool fill();

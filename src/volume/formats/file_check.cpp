@@ -147,11 +147,13 @@ std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> 
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo) {
     // Deflate turns at most 1032 bytes into one (a match of 258 bytes costs at least two bits); a text needs a digit
-    // and a separator per value.
-    constexpr std::uint64_t kMostDeflate = 1040;
+    // and a separator per value. A block of bzip2 holds 900 000 bytes, five of which may stand for 259 alike, and costs
+    // more than 16 bytes.
+    constexpr std::uint64_t kMostDeflate = 1040, kMostBzip2 = 900'000 / 5 * 259 / 16;
     const std::uint64_t bytes = values * bytesPerValue, there = encoding == Encoding::Hex ? stored / 2 : stored;
     std::string problem;
-    if (encoding == Encoding::Deflate && stored < bytes / kMostDeflate)
+    if ((encoding == Encoding::Deflate && stored < bytes / kMostDeflate) ||
+        (encoding == Encoding::Bzip2 && stored < bytes / kMostBzip2))
         problem = "the header claims " + describeBytes(bytes) + ", which " + describeBytes(stored) +
                   " of compressed data cannot hold";
     if (encoding == Encoding::Text && stored / 2 + 1 < values)
@@ -165,35 +167,35 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
 namespace {
 
 /// Reads on until `wanted` bytes are sound, or the stream ends.
-void inflateUpTo(InflatedBytes& bytes, std::uint64_t wanted) {
+void unpackUpTo(UnpackedBytes& bytes, std::uint64_t wanted) {
     std::vector<char> unpacked(1u << 20);
-    while (bytes.soundBytes() < wanted && bytes.end() == InflatedBytes::End::None)
+    while (bytes.soundBytes() < wanted && bytes.end() == UnpackedBytes::End::None)
         bytes.read(unpacked.data(), unpacked.size());
 }
 
 } // namespace
 
-void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
-                     const JobControl& job) {
-    InflatedBytes bytes(path, start, zlib, job);
-    inflateUpTo(bytes, wanted);
-    if (bytes.soundBytes() < wanted) failToInflate(path, bytes, wanted);
+void requireSound(UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path) {
+    unpackUpTo(bytes, wanted);
+    if (bytes.soundBytes() < wanted) failToUnpack(bytes, wanted, path);
 }
 
-std::uint64_t requireInflatesToEnd(const std::string& path, std::uint64_t start, std::uint64_t wanted,
-                                   const JobControl& job) {
-    InflatedBytes bytes(path, start, false, job);
-    inflateUpTo(bytes, std::numeric_limits<std::uint64_t>::max());
-    // What is no gzip may once have been: then the data would end elsewhere.
-    if (bytes.end() == InflatedBytes::End::Followed)
-        throw FileError("the compressed data is followed by something else, so that the end of the data is not known",
-                        path, "copy the file again, or give the header a byte skip from the beginning");
-    if (bytes.soundBytes() < wanted || bytes.end() != InflatedBytes::End::Whole) failToInflate(path, bytes, wanted);
+std::uint64_t requireSoundToEnd(UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path) {
+    unpackUpTo(bytes, std::numeric_limits<std::uint64_t>::max());
+    requireWhole(bytes, wanted, path);
     return bytes.soundBytes();
 }
 
-void failToInflate(const std::string& path, const InflatedBytes& bytes, std::uint64_t wanted) {
-    using End = InflatedBytes::End;
+void requireWhole(const UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path) {
+    // What is no member may once have been one: then the data would end elsewhere.
+    if (bytes.end() == UnpackedBytes::End::Followed)
+        throw FileError("the compressed data is followed by something else, so that the end of the data is not known",
+                        path, "copy the file again, or give the header a byte skip from the beginning");
+    if (bytes.soundBytes() < wanted || bytes.end() != UnpackedBytes::End::Whole) failToUnpack(bytes, wanted, path);
+}
+
+void failToUnpack(const UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path) {
+    using End = UnpackedBytes::End;
     const std::uint64_t yield = bytes.decoded();
     const std::string after =
         " after " + std::to_string(yield) + (yield < wanted ? " of " + std::to_string(wanted) + " bytes" : " bytes");

@@ -37,24 +37,26 @@ FileError notOfFormat(const std::string& expected, const std::string& path, std:
 /// bytesPerValue stays below 2^63.
 std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> sizes, std::uint64_t bytesPerValue);
 
-enum class Encoding { Raw, Deflate, Text, Hex };
+enum class Encoding { Raw, Deflate, Bzip2, Text, Hex };
 
 /// Throws FileError where `stored` bytes cannot hold `values` values of `bytesPerValue` in this encoding. `where` is
 /// the file that holds the data; `toDo` advises what to check.
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo);
 
-/// Unpacks the stream that InflatedBytes reads, without keeping it. Throws FileError unless it yields `wanted` bytes or
-/// more in members with the right checksum and length. Throws Cancelled.
-void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
-                     const JobControl& job);
+/// Unpacks a stream of the file `path` without keeping it. Throws FileError unless it yields `wanted` bytes or more in
+/// members with the right checksum and length. Throws Cancelled.
+void requireSound(UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path);
 
-/// The same for a whole gzip stream, which only zeros may follow in the file. Returns how many bytes it yields.
-std::uint64_t requireInflatesToEnd(const std::string& path, std::uint64_t start, std::uint64_t wanted,
-                                   const JobControl& job);
+/// The same to the end of the file, where only zeros may follow the stream. Returns how many bytes it yields.
+std::uint64_t requireSoundToEnd(UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path);
+
+/// Throws FileError, which says why, unless a stream that was read as far as it goes has ended with the file, or with
+/// zeros behind it, and holds `wanted` sound bytes.
+void requireWhole(const UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path);
 
 /// Throws a FileError that says why a stream, read as far as it goes, does not hold `wanted` sound bytes.
-[[noreturn]] void failToInflate(const std::string& path, const InflatedBytes& bytes, std::uint64_t wanted);
+[[noreturn]] void failToUnpack(const UnpackedBytes& bytes, std::uint64_t wanted, const std::string& path);
 
 /// Throws FileError unless the text at byte `start` of a file holds `wanted` numbers, separated by blanks or commas.
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <list>
 #include <utility>
 
@@ -76,10 +77,8 @@ void InflateIndex::keep(const InflatedBytes& bytes) {
     m_places.push_back(bytes.place());
 }
 
-void InflateIndex::require(std::uint64_t wanted, const JobControl& job) {
+std::unique_ptr<InflatedBytes> InflateIndex::unpackUpTo(std::uint64_t wanted, const JobControl& job) {
     using End = InflatedBytes::End;
-    const std::lock_guard lock(m_mutex);
-    if (m_sound >= wanted) return;
     std::unique_ptr<InflatedBytes> bytes = m_places.empty()
                                                ? std::make_unique<InflatedBytes>(m_path, m_start, m_zlib, job)
                                                : std::make_unique<InflatedBytes>(m_path, m_places.back(), job);
@@ -90,7 +89,22 @@ void InflateIndex::require(std::uint64_t wanted, const JobControl& job) {
         if (bytes->end() == End::None && bytes->decoded() >= last + m_between) keep(*bytes);
     }
     m_sound = bytes->soundBytes();
-    if (m_sound < wanted) failToInflate(m_path, *bytes, wanted);
+    return bytes;
+}
+
+void InflateIndex::require(std::uint64_t wanted, const JobControl& job) {
+    const std::lock_guard lock(m_mutex);
+    if (m_sound >= wanted) return;
+    const auto bytes = unpackUpTo(wanted, job);
+    if (m_sound < wanted) failToUnpack(*bytes, wanted, m_path);
+}
+
+std::uint64_t InflateIndex::requireWhole(const JobControl& job) {
+    const std::lock_guard lock(m_mutex);
+    if (m_whole) return *m_whole;
+    pellucid::requireWhole(*unpackUpTo(std::numeric_limits<std::uint64_t>::max(), job), 0, m_path);
+    m_whole = m_sound;
+    return *m_whole;
 }
 
 std::unique_ptr<InflatedBytes> InflateIndex::from(std::uint64_t decoded, const JobControl& job) const {

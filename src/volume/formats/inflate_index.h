@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,15 +22,20 @@ public:
     static std::shared_ptr<InflateIndex> of(const std::string& path, std::uint64_t start, bool zlib);
 
     InflateIndex(std::string path, std::uint64_t start, bool zlib);
-    /// As requireInflates(). Throws FileError, Cancelled.
+    /// As requireSound(). Throws FileError, Cancelled.
     void require(std::uint64_t wanted, const JobControl& job);
+    /// All of the stream, which only zeros may follow in the file: how many bytes it unpacks to. Throws FileError,
+    /// Cancelled.
+    std::uint64_t requireWhole(const JobControl& job);
     /// The stream from its beginning; skip() goes by the places. It must not outlive this, nor `job`.
     std::unique_ptr<ByteSource> bytes(const JobControl& job) const;
     /// The last place at or before a byte of the unpacked stream.
     std::unique_ptr<InflatedBytes> from(std::uint64_t decoded, const JobControl& job) const;
 
 private:
-    void keep(const InflatedBytes& bytes); // m_mutex is held
+    // m_mutex is held:
+    void keep(const InflatedBytes& bytes);
+    std::unique_ptr<InflatedBytes> unpackUpTo(std::uint64_t wanted, const JobControl& job);
 
     const std::string m_path;
     const std::uint64_t m_start;
@@ -37,6 +43,7 @@ private:
     mutable std::mutex m_mutex;
     std::vector<InflatedBytes::Place> m_places; // ascending
     std::uint64_t m_sound = 0;                  // bytes, from the first one on
+    std::optional<std::uint64_t> m_whole;       // bytes of all, where they are sound
     std::uint64_t m_between;                    // bytes from place to place
 };
 

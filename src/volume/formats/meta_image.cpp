@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <map>
 
+#include "volume/formats/data_files.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
 
@@ -11,13 +12,19 @@ namespace pellucid {
 namespace {
 
 TextHeader parseHeader(const std::string& path) {
-    TextHeader header(path, [](TextHeader& fields, const std::string& line) {
+    TextHeader header(path, [isList = false](TextHeader& fields, const std::string& line) mutable {
+        if (isList) { // names to the end of the file
+            if (!line.empty()) fields.addListed(line);
+            return true;
+        }
         const std::size_t sign = line.find_first_of("=:");
         if (sign == std::string::npos) return line.empty();
         const std::string name = trimmed(line.substr(0, sign)), value = trimmed(line.substr(sign + 1));
         if (fields.has(name) && fields.get(name) != value) fields.fail("the header gives " + inQuotes(name) + " twice");
         fields.set(name, value);
-        return name != "ElementDataFile"; // which ends the header
+        if (name != "ElementDataFile") return true;
+        isList = isListOfFiles(fields, name);
+        return isList; // otherwise it ends the header
     });
     if (!header.has("NDims") && !header.has("ObjectType"))
         throw notOfFormat("a MetaImage file", path, fileHead(path, 1024));
@@ -131,9 +138,10 @@ Encoding encodingIn(const TextHeader& header) {
     return compressed ? Encoding::Deflate : text ? Encoding::Text : Encoding::Raw;
 }
 
-/// The file that holds the samples.
-std::string dataPathIn(const TextHeader& header) {
-    return isLocal(header) ? header.path() : header.dataPath("ElementDataFile");
+/// The files that hold the samples.
+DataFiles filesIn(const TextHeader& header) {
+    if (isLocal(header)) return {{header.path()}, {}};
+    return dataFilesIn(header, "ElementDataFile", [&] { return header.sizes("DimSize", "NDims", 10); });
 }
 
 /// When the steps along the fourth axis are, in no unit that the header names. None where it says nothing but 0, 1, 2.
@@ -200,13 +208,20 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
     layout.bigEndian = isBigEndian(header);
     layout.encoding = encodingIn(header);
     layout.zlib = true;
-    layout.dataPath = dataPathIn(header);
+    DataFiles files = filesIn(header);
+    layout.dataPath = files.paths.front();
     layout.times = timesIn(header, sizes);
-    if (step) placeData(layout, header, *step, job);
+    if (!step) return layout;
+    if (files.share.empty()) {
+        placeData(layout, header, *step, job);
+    } else {
+        files.share.insert(files.share.begin(), channels);
+        placeParts(layout, files.paths, files.share, *step, [&](FileLayout& part) { placeData(part, header, 0, job); });
+    }
     return layout;
 }
 
-std::vector<std::string> dataFiles(const std::string& path) { return {dataPathIn(parseHeader(path))}; }
+std::vector<std::string> dataFiles(const std::string& path) { return filesIn(parseHeader(path)).paths; }
 
 } // namespace
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/round_numbers.h"
+#include "volume/formats/data_files.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
 
@@ -23,7 +24,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 TextHeader parseHeader(const std::string& path) {
     if (const std::string head = fileHead(path, 1024); !head.starts_with("NRRD000"))
         throw notOfFormat("an NRRD file", path, head);
-    return TextHeader(path, [](TextHeader& header, const std::string& line) {
+    return TextHeader(path, [isList = false](TextHeader& header, const std::string& line) mutable {
+        if (isList) { // names to the end of the file
+            if (!line.empty()) header.addListed(line);
+            return true;
+        }
         const std::size_t colon = line.find(':');
         const bool isField = colon != std::string::npos && line.compare(colon, 2, ":=") != 0;
         if (line.starts_with('#') || line.starts_with("NRRD000") || !isField) return !line.empty(); // a blank line ends
@@ -31,6 +36,7 @@ TextHeader parseHeader(const std::string& path) {
         std::erase(name, ' ');
         if (header.has(name)) header.fail("the header gives " + inQuotes(name) + " twice");
         header.set(name, trimmed(line.substr(colon + 1)));
+        isList = name == "datafile" && isListOfFiles(header, name);
         return true;
     });
 }
@@ -337,15 +343,17 @@ Encoding encodingIn(const TextHeader& header) {
     const std::string name = lowerCase(header.get("encoding"));
     if (name == "raw") return Encoding::Raw;
     if (name == "gzip" || name == "gz") return Encoding::Deflate;
+    if (name == "bzip2" || name == "bz2") return Encoding::Bzip2;
     if (name == "ascii" || name == "text" || name == "txt") return Encoding::Text;
     if (name == "hex") return Encoding::Hex;
     header.fail(name.empty() ? "the header names no encoding" : "the encoding " + inQuotes(name) + " is not supported",
-                "write it with encoding raw or gzip");
+                "write it with encoding raw, gzip or bzip2");
 }
 
-/// The file that holds the samples.
-std::string dataPathIn(const TextHeader& header) {
-    return header.get("datafile").empty() ? header.path() : header.dataPath("datafile");
+/// The files that hold the samples.
+DataFiles filesIn(const TextHeader& header) {
+    if (header.get("datafile").empty()) return {{header.path()}, {}};
+    return dataFilesIn(header, "datafile", [&] { return header.sizes("sizes", "dimension", 16); });
 }
 
 /// Where the data lie, checked up to the end of `step`.
@@ -353,13 +361,14 @@ void placeData(FileLayout& layout, const TextHeader& header, int step, const Job
     const std::uint64_t fileBytes = dataFileBytes(layout.dataPath, header.path());
     const std::int64_t lineSkip = header.wholeNumber("lineskip", 0), byteSkip = header.wholeNumber("byteskip", 0);
     if (lineSkip < 0 || byteSkip < -1) header.fail("the header skips a negative number of lines or bytes");
-    const bool fromEnd = byteSkip == -1, deflated = layout.encoding == Encoding::Deflate;
-    if (fromEnd && layout.encoding != Encoding::Raw && !deflated)
+    const bool fromEnd = byteSkip == -1;
+    const bool packed = layout.encoding == Encoding::Deflate || layout.encoding == Encoding::Bzip2;
+    if (fromEnd && layout.encoding != Encoding::Raw && !packed)
         header.fail("the header gives a byte skip of -1, which text cannot have");
     layout.start = header.get("datafile").empty() ? std::min(header.dataStart(), fileBytes) : 0;
     if (lineSkip > 0) layout.start += bytesOfLines(layout.dataPath, layout.start, lineSkip);
     if (byteSkip > 0) // in compressed data, of what comes out
-        (deflated ? layout.skip : layout.start) += static_cast<std::uint64_t>(byteSkip);
+        (packed ? layout.skip : layout.start) += static_cast<std::uint64_t>(byteSkip);
     const std::uint64_t stored = fileBytes - std::min(layout.start, fileBytes);
     const char* toDo = "check sizes and type in the header, or copy the file again";
     if (!fromEnd) return requireData(layout, stored, valuesUpTo(layout, step), toDo, job);
@@ -367,8 +376,8 @@ void placeData(FileLayout& layout, const TextHeader& header, int step, const Job
     const std::uint64_t values = valuesIn(layout, header.path()), bytesPer = bytesPerValue(layout.type);
     requireStored(layout.dataPath, layout.encoding, values, bytesPer, stored, toDo);
     const std::uint64_t bytes = values * bytesPer;
-    if (deflated)
-        layout.skip = requireInflatesToEnd(layout.dataPath, layout.start, bytes, job) - bytes;
+    if (packed)
+        layout.skip = requireSoundToEnd(*unpackedBytes(layout, job), bytes, layout.dataPath) - bytes;
     else
         layout.start = fileBytes - bytes;
 }
@@ -385,13 +394,18 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
     placeGrid(layout, header);
     layout.encoding = encodingIn(header);
     layout.bigEndian = isBigEndian(header, layout);
-    layout.dataPath = dataPathIn(header);
+    const DataFiles files = filesIn(header);
+    layout.dataPath = files.paths.front();
     layout.times = timesIn(layout, header);
-    if (step) placeData(layout, header, *step, job);
+    if (!step) return layout;
+    if (files.share.empty())
+        placeData(layout, header, *step, job);
+    else
+        placeParts(layout, files.paths, files.share, *step, [&](FileLayout& part) { placeData(part, header, 0, job); });
     return layout;
 }
 
-std::vector<std::string> dataFiles(const std::string& path) { return {dataPathIn(parseHeader(path))}; }
+std::vector<std::string> dataFiles(const std::string& path) { return filesIn(parseHeader(path)).paths; }
 
 } // namespace
 

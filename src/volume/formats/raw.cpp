@@ -1,7 +1,9 @@
 // Headerless data: the layout comes from the command line or the import dialog.
 #include <algorithm>
 #include <limits>
+#include <memory>
 
+#include "volume/formats/inflate_index.h"
 #include "volume/formats/reader.h"
 #include "volume/spacing.h"
 
@@ -29,14 +31,36 @@ std::uint64_t stepBytes(const VolumeSource& source) {
     return valueCount(path, sizes, bytesPer) * bytesPer;
 }
 
+/// The steps that `there` bytes hold, as the layout and source.frames allow; 0: other than whole ones.
+int stepsIn(const VolumeSource& source, std::uint64_t there) {
+    const std::uint64_t bytes = stepBytes(source), skip = source.raw->skipBytes;
+    if (skip >= there || (there - skip) % bytes != 0) return 0;
+    const std::uint64_t steps = (there - skip) / bytes;
+    if (steps > 1 && !source.frames) return 0;
+    return static_cast<int>(std::min<std::uint64_t>(steps, std::numeric_limits<int>::max()));
+}
+
+/// The bytes that are laid out: those of the file, or where these are not just one step and it is gzip, what it unpacks
+/// to. Packed bytes may happen to be a multiple of a step: then they would be read as several, all of them wrong.
+struct RawBytes {
+    std::uint64_t stored = 0, count = 0;
+    std::shared_ptr<InflateIndex> index; ///< of gzip
+};
+
+RawBytes rawBytes(const VolumeSource& source, const JobControl& job) {
+    RawBytes bytes;
+    bytes.stored = bytes.count = readableFileBytes(source.path);
+    if (stepsIn(source, bytes.stored) == 1 || !fileHead(source.path, 3).starts_with("\x1f\x8b\b")) return bytes;
+    bytes.index = InflateIndex::of(source.path, 0, false);
+    bytes.count = bytes.index->requireWhole(job);
+    return bytes;
+}
+
 } // namespace
 
-int rawSteps(const VolumeSource& source) {
-    const std::uint64_t bytes = stepBytes(source), skip = source.raw->skipBytes;
-    if (!source.frames) return 1;
-    const std::uint64_t fileBytes = readableFileBytes(source.path);
-    if (skip >= fileBytes || (fileBytes - skip) % bytes != 0) return 1;
-    return static_cast<int>(std::min<std::uint64_t>((fileBytes - skip) / bytes, std::numeric_limits<int>::max()));
+int rawSteps(const VolumeSource& source, const JobControl& job) {
+    stepBytes(source); // which checks the layout
+    return source.frames ? std::max(1, stepsIn(source, rawBytes(source, job).count)) : 1;
 }
 
 Volume readRaw(const VolumeSource& source, const JobControl& job) {
@@ -46,17 +70,20 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     if (source.component != 0)
         throw UsageError("headerless data has one component, number 0", path, "leave the component out",
                          Remedy::NoComponent);
-    const std::uint64_t fileBytes = readableFileBytes(path);
-    const int steps = rawSteps(source);
-    if (steps == 1 && (layout.skipBytes > fileBytes || fileBytes - layout.skipBytes != bytes)) {
+    const RawBytes there = rawBytes(source, job);
+    const int steps = stepsIn(source, there.count);
+    if (steps == 0) {
         std::string claim = dimsText(layout.dims) + " of " + name(layout.type) + " are " + std::to_string(bytes);
         if (layout.skipBytes > 0) claim += " after " + std::to_string(layout.skipBytes) + " skipped";
-        throw FileError("the file has " + std::to_string(fileBytes) + " bytes, but " + claim, path,
+        const std::string unpacked = there.index ? " that unpack to " + std::to_string(there.count) : std::string();
+        throw FileError("the file has " + std::to_string(there.stored) + " bytes" + unpacked + ", but " + claim, path,
                         "correct its layout", Remedy::CorrectRawLayout);
     }
     FileLayout file;
     file.dataPath = path;
-    file.start = layout.skipBytes;
+    file.encoding = there.index ? Encoding::Deflate : Encoding::Raw;
+    file.index = there.index;
+    (there.index ? file.skip : file.start) = layout.skipBytes;
     file.type = valueType(layout.type);
     file.bigEndian = layout.bigEndian;
     file.axes = {{layout.dims.x}, {layout.dims.y}, {layout.dims.z}, {steps}};

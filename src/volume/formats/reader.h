@@ -55,8 +55,8 @@ std::vector<std::string> imagesIn(const std::string& folder);
 Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job);
 
 /// Time steps of source.path as *source.raw says, see contentsOf(). Throws FileError.
-int rawSteps(const VolumeSource& source);
-/// Headerless data, laid out as *source.raw says.
+int rawSteps(const VolumeSource& source, const JobControl& job = {});
+/// Headerless data, laid out as *source.raw says; of a gzip file that has another size, what it unpacks to.
 Volume readRaw(const VolumeSource& source, const JobControl& job);
 
 } // namespace pellucid

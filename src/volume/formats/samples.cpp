@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "volume/excerpt.h"
 #include "volume/formats/byte_source.h"
+#include "volume/formats/bzip2_bytes.h"
 #include "volume/formats/inflate_index.h"
 #include "volume/spacing.h"
 
@@ -130,8 +131,8 @@ public:
             m_bytes = stored.open(job);
         else if (stored.encoding == Encoding::Deflate && stored.index)
             m_bytes = stored.index->bytes(job);
-        else if (stored.encoding == Encoding::Deflate)
-            m_bytes = std::make_unique<InflatedBytes>(m_path, stored.start, stored.zlib, job);
+        else if (stored.encoding == Encoding::Deflate || stored.encoding == Encoding::Bzip2)
+            m_bytes = unpackedBytes(stored, job);
         else if (stored.encoding == Encoding::Hex)
             m_bytes = std::make_unique<HexBytes>(m_path, stored.start, job);
         else
@@ -205,6 +206,59 @@ private:
     TextWords m_words;
     std::uint64_t m_done = 0;
 };
+
+template <class T>
+std::unique_ptr<Values> openStored(const StoredValues& stored, const JobControl& job) {
+    if (stored.encoding == Encoding::Text) return std::make_unique<TextValues<T>>(stored, job);
+    return std::make_unique<BinaryValues<T>>(stored, job);
+}
+
+/// Those of several files, one file after the other. Files that are passed over stay closed.
+template <class T>
+class PartValues final : public Values {
+public:
+    /// `each`: values of one part.
+    PartValues(const std::vector<StoredValues>& parts, std::uint64_t each, const JobControl& job)
+        : m_parts(parts), m_each(each), m_job(job) {}
+    void read(char* to, std::size_t values) override {
+        while (values > 0) {
+            goToPart();
+            const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(values, m_each - m_at % m_each));
+            m_values->read(to, piece);
+            m_at += piece;
+            m_openAt = m_at;
+            to += piece * sizeof(T);
+            values -= piece;
+        }
+    }
+    void skip(std::uint64_t values) override { m_at += values; }
+
+private:
+    /// Opens the part that has the value m_at, and passes over those before it.
+    void goToPart() {
+        const std::uint64_t part = m_at / m_each;
+        if (!m_values || part != m_part) {
+            m_values = openStored<T>(m_parts.at(static_cast<std::size_t>(part)), m_job);
+            m_part = part;
+            m_openAt = part * m_each;
+        }
+        m_values->skip(m_at - m_openAt);
+        m_openAt = m_at;
+    }
+
+    const std::vector<StoredValues>& m_parts;
+    const std::uint64_t m_each;
+    const JobControl& m_job;
+    std::unique_ptr<Values> m_values;     // of m_part
+    std::uint64_t m_at = 0, m_openAt = 0; // the next value of all, and the one that m_values comes to next
+    std::uint64_t m_part = 0;
+};
+
+template <class T>
+std::unique_ptr<Values> openValues(const FileLayout& layout, const JobControl& job) {
+    if (layout.parts.empty()) return openStored<T>(layout, job);
+    return std::make_unique<PartValues<T>>(layout.parts, valuesIn(layout, layout.dataPath) / layout.parts.size(), job);
+}
 
 /// Hands out the values of voxels that follow each other at one stride, in the order of the file.
 template <class T>
@@ -311,12 +365,6 @@ Collected collectPlain(Values& values, const Selection& selection, const JobCont
     return {std::move(kept), {0, -1}};
 }
 
-template <class T>
-std::unique_ptr<Values> openValues(const StoredValues& stored, const JobControl& job) {
-    if (stored.encoding == Encoding::Text) return std::make_unique<TextValues<T>>(stored, job);
-    return std::make_unique<BinaryValues<T>>(stored, job);
-}
-
 /// Whether the voxels lie one behind the other.
 bool isGapless(const Selection& selection) {
     const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
@@ -337,8 +385,8 @@ public:
 template <class T>
 class StoredRows final : public Rows<T> {
 public:
-    StoredRows(const StoredValues& stored, const Selection& selection, const JobControl& job)
-        : m_values(openValues<T>(stored, job)), m_selection(selection), m_reader(*m_values, selection.stride[0]) {}
+    StoredRows(std::unique_ptr<Values> values, const Selection& selection)
+        : m_values(std::move(values)), m_selection(selection), m_reader(*m_values, selection.stride[0]) {}
     void read(const Int3& first, int count, T* to) override {
         const auto& stride = m_selection.stride;
         std::uint64_t start = m_selection.first;
@@ -405,7 +453,7 @@ private:
         selection.stride[0] = m_whole.components;
         selection.stride[1] = selection.stride[0] * static_cast<std::uint64_t>(dims.x);
         selection.stride[2] = selection.stride[1] * static_cast<std::uint64_t>(dims.y);
-        piece.rows = std::make_unique<StoredRows<T>>(piece.file->values, selection, m_job);
+        piece.rows = std::make_unique<StoredRows<T>>(openStored<T>(piece.file->values, m_job), selection);
         ++m_open;
     }
     void close(Piece& piece) {
@@ -423,7 +471,7 @@ private:
 
 template <class T>
 std::unique_ptr<Rows<T>> openRows(const FileLayout& layout, const Selection& selection, const JobControl& job) {
-    if (layout.pieces.empty()) return std::make_unique<StoredRows<T>>(layout, selection, job);
+    if (layout.pieces.empty()) return std::make_unique<StoredRows<T>>(openValues<T>(layout, job), selection);
     return std::make_unique<PieceRows<T>>(layout.pieces, selection, job);
 }
 
@@ -464,8 +512,8 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
 bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
     const auto bytes = bytesPerValue(layout.type);
     const bool native = bytes == 1 || layout.bigEndian == (std::endian::native == std::endian::big);
-    return layout.encoding == Encoding::Raw && !layout.open && layout.pieces.empty() && native && !layout.scaling &&
-           isGapless(selection) && (layout.start + selection.first * bytes) % bytes == 0;
+    return layout.encoding == Encoding::Raw && !layout.open && layout.parts.empty() && layout.pieces.empty() &&
+           native && !layout.scaling && isGapless(selection) && (layout.start + selection.first * bytes) % bytes == 0;
 }
 
 /// The samples of whole layers as they lie in a large file; empty where that cannot be.
@@ -550,14 +598,20 @@ void requireData(FileLayout& layout, std::uint64_t stored, std::uint64_t wanted,
     requireStored(layout.dataPath, layout.encoding, wanted, bytesPer, stored, toDo);
     if (layout.encoding == Encoding::Text) {
         requireNumbers(layout.dataPath, layout.start, wanted, job);
-    } else if (layout.encoding == Encoding::Deflate && selectionOf(layout, 0, 0).steps == 1) {
-        requireInflates(layout.dataPath, layout.start, layout.zlib, bytes, job);
+    } else if (layout.encoding == Encoding::Bzip2 ||
+               (layout.encoding == Encoding::Deflate && selectionOf(layout, 0, 0).steps == 1)) {
+        requireSound(*unpackedBytes(layout, job), bytes, layout.dataPath);
     } else if (layout.encoding == Encoding::Deflate) {
         layout.index = InflateIndex::of(layout.dataPath, layout.start, layout.zlib);
         layout.index->require(bytes, job);
     } else if (layout.encoding == Encoding::Raw && stored > all) {
         layout.notices.push_back("the data has " + std::to_string(stored - all) + " bytes more than the header says");
     }
+}
+
+std::unique_ptr<UnpackedBytes> unpackedBytes(const StoredValues& stored, const JobControl& job) {
+    if (stored.encoding == Encoding::Bzip2) return std::make_unique<Bunzipped>(stored.dataPath, stored.start, job);
+    return std::make_unique<InflatedBytes>(stored.dataPath, stored.start, stored.zlib, job);
 }
 
 FileContents contentsOf(const FileLayout& layout) {

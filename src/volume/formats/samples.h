@@ -45,7 +45,7 @@ struct StoredValues {
     Encoding encoding = Encoding::Raw;
     bool zlib = false;       ///< Deflate: a zlib stream may stand there, too
     std::uint64_t start = 0; ///< the encoded data begin here, bytes of the file
-    std::uint64_t skip = 0;  ///< the first value begins here, bytes of the decoded data (Deflate only)
+    std::uint64_t skip = 0;  ///< the first value begins here, bytes of the decoded data (Deflate, Bzip2)
     ValueType type = ValueType::U8;
     bool bigEndian = false; ///< no matter for Text
     /// Where given: the bytes of the values, in place of `encoding`, `start` and `skip` (raw to those who ask).
@@ -70,6 +70,8 @@ struct FileLayout : StoredValues {
     WorldAxes worldAxes = WorldAxes::File;
     std::optional<ValueScaling> scaling;
     std::optional<StepTimes> times; ///< of steps along one axis
+    /// Where given: the values are in these, one after the other, as many in each.
+    std::vector<StoredValues> parts;
     /// Where given: the values are in these, which together have all voxels that are asked for; of a voxel that several
     /// have, the last one's. They have the type of the layout; its axes are one of components, or none, and x, y, z.
     std::vector<FilePiece> pieces;
@@ -94,6 +96,9 @@ std::uint64_t valuesUpTo(const FileLayout& layout, int step);
 /// checked twice as long as the file stays the same. Bytes left over become a notice. `toDo` advises what to check.
 void requireData(FileLayout& layout, std::uint64_t stored, std::uint64_t wanted, const char* toDo,
                  const JobControl& job);
+
+/// The unpacked bytes of `stored`, which is Deflate or Bzip2, from its beginning. `job` must outlive them.
+std::unique_ptr<UnpackedBytes> unpackedBytes(const StoredValues& stored, const JobControl& job);
 
 /// What the layout says that can be chosen of.
 FileContents contentsOf(const FileLayout& layout);

@@ -27,14 +27,18 @@ public:
     std::int64_t wholeNumber(const std::string& name, std::int64_t otherwise) const;
     /// The sizes of 1 to `mostAxes` axes, as many as the field `dimension` says.
     std::vector<std::int64_t> sizes(const std::string& name, const std::string& dimension, std::int64_t mostAxes) const;
-    /// The one file that a field names, relative to the header's folder.
-    std::string dataPath(const std::string& name) const;
+    /// Names of files that stand behind the fields, one on each line.
+    void addListed(std::string name) { m_listed.push_back(std::move(name)); }
+    const std::vector<std::string>& listed() const noexcept { return m_listed; }
+    /// The file that the header calls `file`, relative to its own folder.
+    std::string dataPath(const std::string& file) const;
 
     [[noreturn]] void fail(const std::string& what, const std::string& toDo = "correct the header") const;
 
 private:
     std::string m_path;
     std::map<std::string, std::string> m_fields;
+    std::vector<std::string> m_listed;
     std::uint64_t m_dataStart = 0;
 };
 
