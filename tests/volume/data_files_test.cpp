@@ -225,8 +225,9 @@ TEST_CASE("MetaImage data lie in several files", "[data-files]") {
 TEST_CASE("all files of a list are files of the volume", "[data-files]") {
     const TempFolder folder;
     const std::string list =
-        folder.write("a.nhdr", "NRRD0004\n" + kSizes + "encoding: raw\ndata file: LIST\na\n./b\nc\n/d\n");
-    CHECK(filesOf(sourceOf(list)) == Names{list, folder.path("a"), folder.path("./b"), folder.path("c"), "/d"});
+        folder.write("a.nhdr", "NRRD0004\n" + kSizes + "encoding: raw\ndata file: LIST\na\n./b\nc\nd\n");
+    CHECK(filesOf(sourceOf(list)) ==
+          Names{list, folder.path("a"), folder.path("./b"), folder.path("c"), folder.path("d")});
     const std::string pattern = folder.write("a.mhd", "NDims = 3\nDimSize = 2 3 4\nElementType = MET_USHORT\n"
                                                       "ElementDataFile = s%02d 9 3 -2\n");
     CHECK(filesOf(sourceOf(pattern)) ==
