@@ -24,6 +24,7 @@ Command addSamples(CLI::App& program);
 Command addPresets(CLI::App& program);
 Command addFilm(CLI::App& program);
 Command addGenerate(CLI::App& program);
+Command addConvert(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);
 Command addFields(CLI::App& program);

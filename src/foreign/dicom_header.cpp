@@ -41,6 +41,22 @@ std::string textOf(const DataSet& set, const Tag& tag) {
     return trimmed(text);
 }
 
+/// A text for people, in UTF-8: from Latin-1 where the file says that (ISO_IR 100) or says nothing. Texts in other sets
+/// of characters stay as they are.
+std::string wordsOf(const DataSet& set, const Tag& tag) {
+    const std::string charset = textOf(set, Tag(0x0008, 0x0005)), text = textOf(set, tag);
+    if (!charset.empty() && charset.find("ISO_IR 100") == std::string::npos) return text;
+    std::string words;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 0x80)
+            words += c;
+        else
+            words += {static_cast<char>(0xc0 | code >> 6), static_cast<char>(0x80 | (code & 0x3f))};
+    }
+    return words;
+}
+
 /// The numbers of a decimal or integer string.
 std::vector<double> numbersOf(const DataSet& set, const Tag& tag) {
     std::vector<double> numbers;
@@ -260,14 +276,6 @@ void takeStorage(DicomFrame& frame, const gdcm::Reader& reader) {
 
 } // namespace
 
-bool isDicomFile(const std::string& path) {
-    try {
-        return describeContent(fileHead(path, 1024)) == "a DICOM file";
-    } catch (const FileError&) {
-        return false;
-    }
-}
-
 std::vector<DicomFrame> readDicomHeader(const std::string& path) {
     gdcm::Reader reader;
     if (!readUpToPixels(reader, path))
@@ -279,7 +287,7 @@ std::vector<DicomFrame> readDicomHeader(const std::string& path) {
     frame.file = path;
     frame.seriesUid = textOf(set, Tag(0x0020, 0x000e));
     frame.instanceUid = textOf(set, Tag(0x0008, 0x0018));
-    frame.description = textOf(set, Tag(0x0008, 0x103e));
+    frame.description = wordsOf(set, Tag(0x0008, 0x103e));
     frame.modality = textOf(set, Tag(0x0008, 0x0060));
     frame.seriesNumber = wholeOf(set, Tag(0x0020, 0x0011));
     frame.instanceNumber = wholeOf(set, Tag(0x0020, 0x0013));

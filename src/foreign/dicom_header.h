@@ -59,9 +59,6 @@ struct DicomFrame {
     std::array<std::optional<double>, kDicomTimes> times;
 };
 
-/// Whether a file begins like DICOM.
-bool isDicomFile(const std::string& path);
-
 /// The pictures in a file; none where it has no pixels, as reports and settings of viewers. Throws FileError for a file
 /// that is no DICOM, or whose pictures cannot be read.
 std::vector<DicomFrame> readDicomHeader(const std::string& path);

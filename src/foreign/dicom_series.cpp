@@ -45,7 +45,7 @@ std::vector<DicomFrame> framesIn(const std::vector<std::string>& files, const Be
     std::vector<DicomFrame> frames;
     for (const std::string& file : files) {
         before(bytesOfFile(file));
-        if (!isDicomFile(file)) continue;
+        if (contentOf(file) != "a DICOM file") continue;
         try {
             const std::vector<DicomFrame> more = readDicomHeader(file);
             frames.insert(frames.end(), more.begin(), more.end());

@@ -18,19 +18,8 @@ constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
     static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
-                                                    pvtiFormat(), pvdFormat(), imageFormat(), dicomFormat()};
+                                                    pvtiFormat(), pvdFormat(),       imageFormat(), dicomFormat()};
     return kFormats;
-}
-
-/// What a file is by its first bytes; empty where it is none, or cannot be read.
-std::string contentOf(const std::string& path) {
-    std::error_code ec;
-    if (!std::filesystem::is_regular_file(path, ec)) return {};
-    try {
-        return describeContent(fileHead(path, 1024));
-    } catch (const FileError&) {
-        return {};
-    }
 }
 
 bool isFolder(const std::string& path) {

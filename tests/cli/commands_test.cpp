@@ -938,3 +938,23 @@ TEST_CASE("progress goes to stderr where it is asked for", "[cli]") {
     CHECK(search.err.find("optimizing: 0 moves, distance ") != std::string::npos);
     CHECK(search.err.find("optimizing: 1 moves, distance ") != std::string::npos);
 }
+
+TEST_CASE("convert writes a volume, or a part of it, in another format", "[cli]") {
+    const Workshop w;
+    const json whole = w.json({"convert", "sample:shells", "--sample-size", "16", "--out", "a.nii.gz"});
+    CHECK(whole["command"] == "convert");
+    CHECK(whole["type"] == w.json({"info", "sample:shells", "--sample-size", "16"})["type"]);
+    const json before = w.json({"info", "sample:shells", "--sample-size", "16"}), after = w.json({"info", "a.nii.gz"});
+    for (const char* key : {"dims", "spacing", "range", "invalid", "type"}) CHECK(after[key] == before[key]);
+    const json part = w.json({"convert", "a.nii.gz", "--region", "2:10,0:16,4:8", "--type", "f64", "--out", "b.vti"});
+    CHECK(part["dims"] == json({8, 16, 4}));
+    CHECK(w.json({"info", "b.vti"})["type"] == "f64");
+    CHECK(w.json({"info", "b.vti"})["dims"] == json({8, 16, 4}));
+    const Outcome rounded = w.run({"convert", "b.vti", "--type", "u8", "--out", "c.mha"});
+    CHECK(rounded.status == 0);
+    const Outcome wrong = w.run({"convert", "b.vti", "--out", "c.png"});
+    CHECK(wrong.status == 2);
+    CHECK_THAT(wrong.err, Catch::Matchers::Contains("--out c.png") && Catch::Matchers::Contains(".nii.gz"));
+    const Outcome over = w.run({"convert", "b.vti", "--out", "b.vti"});
+    CHECK(over.status == 2);
+}

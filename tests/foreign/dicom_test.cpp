@@ -228,21 +228,31 @@ TEST_CASE("of several series in a folder one is chosen", "[dicom]") {
         slice.description = "thin\x1b[31m";
         folder.write("study/b" + std::to_string(n), dicomFile(slice));
     }
+    DicomSlice german = sliceAt(0);
+    german.series = "1.2.10";
+    german.seriesNumber = "8";
+    german.description = "Sch\xe4"
+                         "del"; // ä in Latin-1
+    german.more.text(0x0008, 0x0005, "CS", "ISO_IR 100");
+    folder.write("study/c", dicomFile(german));
     const FileContents contents = contentsOf(at(folder.path("study")));
-    REQUIRE(contents.arrays.size() == 2);
+    REQUIRE(contents.arrays.size() == 3);
+    CHECK(contents.arrays[2] == "8: Schädel");
+    CHECK(contents.array == "1: head");
+    CHECK(contents.details[0] == "3 × 2 pixels, 3 pictures");
     CHECK(contents.arrays[0] == "1: head");
     CHECK(contents.arrays[1].find('\x1b') == std::string::npos);
     const Volume largest = loadVolume(at(folder.path("study")));
     CHECK(largest.dims().z == 3);
-    CHECK(hasNotice(largest, "series '1: head' of 2 is shown"));
+    CHECK(hasNotice(largest, "series '1: head' of 3 is shown"));
     for (const std::string& name : {std::string("7"), contents.arrays[1], std::string("1.2.9")}) {
         const Volume chosen = loadVolume(at(folder.path("study"), name));
         CHECK(chosen.dims().z == 2);
         CHECK(chosen.notices.empty());
     }
-    CHECK_THROWS_WITH(loadVolume(at(folder.path("study"), "8")),
-                      Contains("there is no series '8'") && Contains("1: head"));
-    CHECK_THROWS_AS(loadVolume(at(folder.path("study"), "8")), UsageError);
+    CHECK_THROWS_WITH(loadVolume(at(folder.path("study"), "9")),
+                      Contains("there is no series '9'") && Contains("1: head"));
+    CHECK_THROWS_AS(loadVolume(at(folder.path("study"), "9")), UsageError);
 }
 
 TEST_CASE("several pictures of each place are time steps", "[dicom]") {

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include <zlib.h>
+
 #include "support/dicom_writer.h"
 #include "support/temp_folder.h"
 #include "support/tiff_writer.h"
@@ -192,4 +194,33 @@ TEST_CASE("what is wrong with a TIFF file is told", "[images]") {
     VolumeSource named = at(folder.write("a.tif", whole));
     named.array = "x";
     CHECK_THROWS_AS(loadVolume(named), UsageError);
+}
+
+TEST_CASE("a flipped bit in a deflated TIFF file is refused or leaves the voxels as they are", "[images]") {
+    const TempFolder folder;
+    std::vector<unsigned char> values(64 * 64);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<unsigned char>(i * i / 97);
+    uLongf bytes = compressBound(values.size());
+    std::vector<unsigned char> packed(bytes);
+    REQUIRE(compress(packed.data(), &bytes, values.data(), values.size()) == Z_OK);
+    TiffPage page;
+    page.width = page.height = 64;
+    page.bits = 8;
+    page.compression = 8;
+    page.pixels.assign(packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(bytes));
+    const std::string whole = tiffFile({page});
+    const std::size_t first = whole.find(page.pixels);
+    const Volume sound = loadVolume(at(folder.write("sound.tif", whole)));
+    CHECK(sound.value(4095) == values[4095]);
+    for (std::size_t bit = 0; bit < 60; ++bit) {
+        std::string damaged = whole;
+        const std::size_t at_ = first + bit * 7919 % bytes;
+        damaged[at_] = static_cast<char>(damaged[at_] ^ (1 << bit % 8));
+        CAPTURE(at_ - first, bit % 8);
+        try {
+            CHECK(loadVolume(at(folder.write("damaged.tif", damaged))).samples() == sound.samples());
+        } catch (const FileError& error) {
+            CHECK_THAT(error.what(), Contains("damaged.tif"));
+        }
+    }
 }

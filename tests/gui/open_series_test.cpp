@@ -352,3 +352,27 @@ TEST_CASE("a header that names a file outside its folder is opened only after a 
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     CHECK(w.services().scene().volume->dims() == Int3(kSide));
 }
+
+TEST_CASE("the volume that is shown is saved in another format", "[series]") {
+    const QTemporaryDir folder;
+    OpenWindow w;
+    const Volume& shown = *w.services().scene().volume;
+    CHECK(w.child<QAction>("saveVolumeAction").isEnabled());
+    QSignalSpy saved(&w.saving(), &SaveController::volumeSaved);
+    for (const char* name : {"a.nii.gz", "a.mhd", "a.vti"}) {
+        VolumeSource source;
+        source.path = folder.filePath(name).toStdString();
+        w.saving().saveVolume(QString::fromStdString(source.path));
+        REQUIRE(waitFor([&] { return saved.count() == 1; }));
+        saved.clear();
+        CHECK(loadVolume(source).samples() == shown.samples());
+    }
+    QString said;
+    answer("errorDialog", [&](QDialog& dialog) {
+        for (const QLabel* label : dialog.findChildren<QLabel*>()) said += label->text();
+        dialog.reject();
+    });
+    w.saving().saveVolume(folder.filePath("a.png"));
+    REQUIRE(waitFor([&] { return !said.isEmpty(); }));
+    CHECK(said.contains(".nii.gz"));
+}

@@ -3,6 +3,7 @@
 #include "gui_support.h"
 
 #include <cmath>
+#include <fstream>
 #include <random>
 
 #include <QAction>
@@ -12,6 +13,7 @@
 #include <QTemporaryDir>
 #include <QToolButton>
 
+#include "dialogs/series_choice_dialog.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "panels/space_panel.h"
@@ -19,6 +21,7 @@
 #include "render/clip_handles.h"
 #include "services/selection.h"
 #include "session/variable_edits.h"
+#include "support/dicom_writer.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -300,6 +303,62 @@ TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
 }
 
 // A map of t-values that is made up, over a head.
+namespace {
+
+/// Slices of the knee across one axis, as DICOM: of the voxels of `volume`, 12 bits.
+void writeSlices(const QTemporaryDir& folder, const Volume& volume, int across, const char* description) {
+    const Int3 dims = volume.dims();
+    const int i = across == 0 ? 1 : 0, j = across == 2 ? 1 : 2;
+    const char* const axes[] = {"0\\1\\0\\0\\0\\-1", "1\\0\\0\\0\\0\\-1", "1\\0\\0\\0\\1\\0"};
+    for (int n = 0; n < dims[across]; ++n) {
+        test::DicomSlice slice;
+        slice.columns = dims[i];
+        slice.rows = dims[j];
+        slice.number = n + 1;
+        slice.series = "1.2." + std::to_string(across);
+        slice.seriesNumber = std::to_string(3 - across);
+        slice.description = description;
+        slice.modality = "MR";
+        slice.axes = axes[across];
+        slice.position = across == 0   ? std::to_string(n) + "\\0\\0"
+                         : across == 1 ? "0\\" + std::to_string(n) + "\\0"
+                                       : "0\\0\\" + std::to_string(n);
+        std::vector<int> values;
+        for (int row = 0; row < dims[j]; ++row)
+            for (int column = 0; column < dims[i]; ++column) {
+                Int3 voxel(0);
+                voxel[across] = n;
+                voxel[i] = column;
+                voxel[j] = across == 2 ? row : dims[j] - 1 - row;
+                const auto at = static_cast<std::size_t>(voxel.x + dims.x * (voxel.y + dims.y * voxel.z));
+                values.push_back(static_cast<int>(4000 * volume.intensity(at)));
+            }
+        slice.pixels = test::words(values);
+        const QString name = QStringLiteral("IM%1_%2").arg(across).arg(n);
+        std::ofstream(folder.filePath(name).toStdString(), std::ios::binary) << test::dicomFile(slice);
+    }
+}
+
+} // namespace
+
+TEST_CASE("the series of a study for the guide", "[.pictures][.seriespicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    const QTemporaryDir folder;
+    VolumeSource source;
+    source.path = "sample:knee";
+    source.sampleSize = 96;
+    const Volume knee = loadVolume(source);
+    writeSlices(folder, knee, 0, "sagittal");
+    writeSlices(folder, knee, 1, "coronal");
+    writeSlices(folder, knee, 2, "axial");
+    source = {};
+    source.path = folder.path().toStdString();
+    SeriesChoiceDialog dialog(source, contentsOf(source));
+    dialog.show();
+    QTest::qWait(3000); // for the pictures
+    REQUIRE(dialog.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + "/series_dialog.png"));
+}
+
 TEST_CASE("a picture of an overlay", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     VolumeSource head;

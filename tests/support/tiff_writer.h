@@ -1,4 +1,4 @@
-// Writes TIFF files of pages that are not packed, as TIFF 6.0 describes them.
+// Writes TIFF files, as TIFF 6.0 describes them.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@ namespace pellucid::test {
 
 struct TiffPage {
     int width = 3, height = 2, bits = 16, samples = 1;
+    int compression = 1;     ///< 1: none; 8: deflate, pixels are packed then
     int format = 1;          ///< 1: unsigned, 2: signed, 3: floats
     std::string pixels;      ///< bytes, little endian
     std::string description; ///< ImageDescription; empty: none
@@ -43,7 +44,7 @@ inline std::string tiffFile(const std::vector<TiffPage>& pages) {
         if (page.samples <= 2) bits.resize(4);
         entries.push_back({258, 3, static_cast<std::uint64_t>(page.samples),
                            page.samples > 2 ? put(bits) : static_cast<std::uint64_t>(page.bits)});
-        entries.push_back({259, 3, 1, 1});
+        entries.push_back({259, 3, 1, static_cast<std::uint64_t>(page.compression)});
         entries.push_back({262, 3, 1, page.samples >= 3 ? 2u : 1u});
         if (!page.description.empty())
             entries.push_back({270, 2, page.description.size() + 1, put(page.description + '\0')});

@@ -17,6 +17,7 @@
 #include "session/session_json.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
+#include "volume/volume_writer.h"
 
 namespace pellucid::gui {
 namespace {
@@ -70,14 +71,23 @@ SaveController::SaveController(Services& services, FieldController& fields,
               return task.folder;
           },
           [this](const ReportTask&, const QString& folder) { m_services.saySaved(folder, tr("with the report")); },
-          WhenBusy::Queue, &services.compute()) {
-    for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports}) {
+          WhenBusy::Queue, &services.compute()),
+      m_volumes([](const VolumeTask& task,
+                   const JobControl& job) { return writeVolume(*task.volume, task.path.toStdString(), {}, job); },
+                [this](const VolumeTask& task, const std::vector<std::string>& lost) {
+                    m_services.saySaved(task.path);
+                    for (const std::string& notice : lost) m_services.notices().add({QString::fromStdString(notice)});
+                    Q_EMIT volumeSaved(task.path);
+                },
+                WhenBusy::Queue) {
+    for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports, &m_volumes}) {
         connect(job, &JobBase::busyChanged, this, &SaveController::busyChanged);
         connect(job, &JobBase::progress, this, &SaveController::progress);
         connect(job, &JobBase::cancelled, this, &SaveController::cancelled);
     }
     services.showFailuresOf(m_reports, tr("Cannot save the report"));
     services.showFailuresOf(m_images, tr("Cannot save the image"));
+    services.showFailuresOf(m_volumes, tr("Cannot save the volume"));
 }
 
 void SaveController::addActions() {
@@ -92,6 +102,9 @@ void SaveController::addActions() {
     menu.add("saveTfAsAction", tr("Save transfer f&unction as…"), "Ctrl+Shift+T", {}, [this] { chooseTf(true); });
     menu.add("saveTfDrawingAction", tr("Save transfer function as &drawing…"), {},
              tr("The curve in its colours, over the histogram"), [this] { chooseTfDrawing(); });
+    menu.separate();
+    menu.add("saveVolumeAction", tr("Save vo&lume as…"), {},
+             tr("The data that is shown, as NRRD, MetaImage, NIfTI or VTK image data"), [this] { chooseVolume(); });
     menu.separate();
     menu.add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), [this] { chooseImage(); },
              {.inToolBar = true});
@@ -166,6 +179,24 @@ void SaveController::saveImage(const SaveImageOptions& options) {
     m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());
     m_images.start(picture, options.path);
     Q_EMIT busyChanged();
+}
+
+void SaveController::saveVolume(const QString& path) {
+    if (!m_services.store().hasVolume()) return;
+    if (!m_services.attempt(tr("Cannot save the volume"), [&] { checkVolumeSuffix(path.toStdString()); })) return;
+    m_busyText = tr("Saving %1…").arg(QFileInfo(path).fileName());
+    m_volumes.start({m_services.scene().volume, path}, path);
+    Q_EMIT busyChanged();
+}
+
+void SaveController::chooseVolume() {
+    if (!m_services.store().hasVolume()) return;
+    QStringList filters;
+    for (const auto& [format, patterns] : writtenVolumePatterns())
+        filters << QStringLiteral("%1 (%2)").arg(QString::fromStdString(format), QString::fromStdString(patterns));
+    const QString path = askSavePath(m_services.window(), tr("Save volume as"), "savedVolumeFolder",
+                                     baseName(m_services.scene()) + ".nrrd", filters.join(";;"), {}, {});
+    if (!path.isEmpty()) saveVolume(QFileInfo(path).suffix().isEmpty() ? path + ".nrrd" : path);
 }
 
 const Run* SaveController::latestRun() const {

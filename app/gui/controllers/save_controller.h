@@ -31,6 +31,8 @@ public:
     bool saveBars(const QString& path);
     /// The transfer function over the histogram, as a drawing; .svg or .png. Likewise.
     bool saveTfDrawing(const QString& path);
+    /// The data of the frame that is shown, in the format of the suffix; in the background.
+    void saveVolume(const QString& path);
     /// Of a run with a start: the folder gets report.html, curves.csv, and the session that the run began with; in the
     /// background.
     void saveReport(const Run& run, const QString& folder);
@@ -47,17 +49,19 @@ public:
 
     QAction* barsAction() const { return m_barsAction; }
 
-    bool isBusy() const { return m_images.isRunning() || m_reports.isRunning(); }
+    bool isBusy() const { return m_images.isRunning() || m_reports.isRunning() || m_volumes.isRunning(); }
     const QString& busyText() const { return m_busyText; }
     void cancel() {
         m_images.cancel();
         m_reports.cancel();
+        m_volumes.cancel();
     }
 
 Q_SIGNALS:
     void busyChanged();
     void progress(double fraction);
     void imageSaved(const QString& path);
+    void volumeSaved(const QString& path);
     void cancelled();
     void sessionPathChanged();
 
@@ -72,11 +76,16 @@ private:
         Scene now;
         QString folder;
     };
+    struct VolumeTask {
+        std::shared_ptr<const Volume> volume;
+        QString path;
+    };
     const Run* latestRun() const; ///< that a report can be made of; null: none
     bool mayReplace(const QString& file, const QString& title, const QString& question); ///< asks where it is there
     bool chooseSession(bool askForName);
     bool chooseTf(bool askForName);
     void chooseImage();
+    void chooseVolume();
     void chooseBars();
     void chooseTfDrawing();
     /// Asks where a drawing is to go; empty: nowhere.
@@ -91,6 +100,7 @@ private:
     QAction* m_barsAction = nullptr;
     Job<Picture, QString> m_images;
     Job<ReportTask, QString> m_reports;
+    Job<VolumeTask, std::vector<std::string>> m_volumes; ///< makes what the file does not say
 };
 
 } // namespace pellucid::gui

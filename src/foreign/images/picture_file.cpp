@@ -11,6 +11,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <tiffio.h>
+#include <zlib.h>
 
 #include "base/text.h"
 #include "volume/formats/file_check.h"
@@ -116,6 +117,7 @@ public:
                     const std::uint32_t rows = std::min(tileHeight, height - y),
                                         columns = std::min(tileWidth, width - x);
                     const auto wanted = static_cast<tmsize_t>(pixel * tileWidth * (isTiled ? tileHeight : rows));
+                    if (isDeflated()) requireSound(number, isTiled);
                     const tmsize_t got = isTiled ? TIFFReadEncodedTile(m_file, number, tile.data(), wanted)
                                                  : TIFFReadEncodedStrip(m_file, number, tile.data(), wanted);
                     if (got < wanted)
@@ -140,6 +142,33 @@ private:
         std::uint16_t planar = PLANARCONFIG_CONTIG;
         TIFFGetFieldDefaulted(m_file, TIFFTAG_PLANARCONFIG, &planar);
         return planar == PLANARCONFIG_SEPARATE;
+    }
+    bool isDeflated() const {
+        std::uint16_t compression = COMPRESSION_NONE;
+        TIFFGetFieldDefaulted(m_file, TIFFTAG_COMPRESSION, &compression);
+        return compression == COMPRESSION_ADOBE_DEFLATE || compression == COMPRESSION_DEFLATE;
+    }
+    /// Throws FileError unless the packed bytes of a tile or strip have the right checksum, which libtiff leaves
+    /// unread.
+    void requireSound(std::uint32_t number, bool isTiled) {
+        const std::uint64_t packed = TIFFGetStrileByteCount(m_file, number);
+        if (packed == 0 || packed > readableFileBytes(m_path)) return; // read on: it says what is wrong
+        std::vector<unsigned char> bytes(packed), out(1u << 16);
+        const auto size = static_cast<tmsize_t>(packed);
+        const tmsize_t got = isTiled ? TIFFReadRawTile(m_file, number, bytes.data(), size)
+                                     : TIFFReadRawStrip(m_file, number, bytes.data(), size);
+        z_stream stream{};
+        if (got < size || inflateInit(&stream) != Z_OK) return;
+        stream.next_in = bytes.data();
+        stream.avail_in = static_cast<uInt>(packed);
+        int status = Z_OK;
+        while (status == Z_OK) {
+            stream.next_out = out.data();
+            stream.avail_out = static_cast<uInt>(out.size());
+            status = inflate(&stream, Z_NO_FLUSH);
+        }
+        inflateEnd(&stream);
+        if (status != Z_STREAM_END) throw failure(m_path, "page " + std::to_string(m_page) + " is damaged");
     }
     /// A part of a row, of all samples or of those of one plane.
     static void put(std::span<std::byte> to, std::array<std::uint32_t, 2> at, std::uint32_t columns, const char* from,

@@ -121,6 +121,16 @@ std::string describeContent(std::string_view head) {
     return std::all_of(head.begin(), head.end(), looksLikeText) ? "text" : "binary data";
 }
 
+std::string contentOf(const std::string& path) {
+    std::error_code ec;
+    if (!fs::is_regular_file(path, ec)) return {};
+    try {
+        return describeContent(fileHead(path, 1024));
+    } catch (const FileError&) {
+        return {};
+    }
+}
+
 FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head) {
     return {"this is not " + expected + " but " + describeContent(head), path, "give it the suffix of its own format",
             Remedy::GiveRawLayout};

@@ -29,6 +29,8 @@ void requireIndex(const std::string& what, int index, std::uint64_t count, const
 
 /// What a file seems to be, for error messages: "a PNG image", "text", "binary data", …
 std::string describeContent(std::string_view head);
+/// The same of a file; empty where it is none, or cannot be read.
+std::string contentOf(const std::string& path);
 
 /// What is wrong with a file that is not `expected` ("an NRRD file"), by its first 1024 bytes.
 FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head);

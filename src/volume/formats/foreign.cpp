@@ -23,17 +23,6 @@ bool isFolder(const std::string& path) {
     return fs::is_directory(path, ec);
 }
 
-/// What a file is by its content; empty where it is none, or cannot be read.
-std::string contentOf(const std::string& path) {
-    std::error_code ec;
-    if (!fs::is_regular_file(path, ec)) return {};
-    try {
-        return describeContent(fileHead(path, 1024));
-    } catch (const FileError&) {
-        return {};
-    }
-}
-
 ReaderRequest requestOf(const VolumeSource& source, const char* program) {
     ReaderRequest request;
     request.program = program;
@@ -156,11 +145,7 @@ Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job) {
 }
 
 VolumeFormat dicomFormat() {
-    return {"DICOM",
-            {".dcm", ".dicom", ".ima"},
-            describe<dicomRequest>,
-            read<dicomRequest>,
-            dataFiles<dicomRequest>};
+    return {"DICOM", {".dcm", ".dicom", ".ima"}, describe<dicomRequest>, read<dicomRequest>, dataFiles<dicomRequest>};
 }
 
 VolumeFormat imageFormat() {

@@ -6,7 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/joint_file.h"
 #include "base/round_numbers.h"
-#include "volume/formats/text_header.h"
+#include "volume/formats/writer.h"
 #include "volume/loader.h"
 #include "volume/volume_part.h"
 #include "volume/voxel_loops.h"
@@ -37,9 +37,28 @@ std::string headerText(const Geometry& g, SampleType type, const std::string& en
     return text;
 }
 
-void deflateInto(OutputFile& out, const char* data, std::size_t bytes) {
+void writeFile(const std::string& path, const Geometry& geometry, SampleType type, std::span<const std::byte> data,
+               const JobControl& job) {
+    writeAtomically(path, [&](OutputFile& out) {
+        out.write(headerText(geometry, type, "gzip"));
+        deflatePieces(out, {data}, job);
+    });
+}
+
+void write(const Volume& volume, const std::string& path, const JobControl& job) {
+    writeFile(path, volume.geometry(), volume.sampleType(), sampleBytes(volume), job);
+}
+
+} // namespace
+
+VolumeWriter nrrdWriter() {
+    return {"NRRD", {".nrrd"}, write, [](const Geometry&) { return std::vector<std::string>{}; }};
+}
+
+void deflatePieces(OutputFile& out, std::initializer_list<std::span<const std::byte>> parts, const JobControl& job) {
     constexpr int kGzipFrame = 16;
     constexpr int kLevel = 3; // noise does not get smaller at higher levels, only slower
+    constexpr std::size_t kPiece = 1u << 24;
     z_stream stream{};
     PELLUCID_CHECK(deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzipFrame, 8, Z_DEFAULT_STRATEGY) == Z_OK);
     const struct End {
@@ -47,41 +66,33 @@ void deflateInto(OutputFile& out, const char* data, std::size_t bytes) {
         ~End() { deflateEnd(&stream); }
     } end{stream};
     std::vector<char> packed(1u << 18);
-    constexpr std::size_t kPiece = 1u << 24;
-    std::size_t done = 0;
-    bool last = false;
-    while (!last) {
-        const std::size_t piece = std::min(kPiece, bytes - done);
-        last = done + piece == bytes;
-        stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data + done)); // zlib does not write there
-        stream.avail_in = static_cast<uInt>(piece);
+    const auto put = [&](std::span<const std::byte> piece, int flush) {
+        // zlib does not write there.
+        stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(piece.data()));
+        stream.avail_in = static_cast<uInt>(piece.size());
         do {
             stream.next_out = reinterpret_cast<Bytef*>(packed.data());
             stream.avail_out = static_cast<uInt>(packed.size());
-            deflate(&stream, last ? Z_FINISH : Z_NO_FLUSH);
+            deflate(&stream, flush);
             out.write(packed.data(), packed.size() - stream.avail_out);
         } while (stream.avail_out == 0);
-        done += piece;
-    }
+    };
+    for (const std::span<const std::byte> part : parts)
+        for (std::size_t done = 0; done < part.size();) {
+            job.throwIfStopped();
+            const auto piece = part.subspan(done, std::min(kPiece, part.size() - done));
+            put(piece, Z_NO_FLUSH);
+            done += piece.size();
+            job.report(static_cast<double>(done) / static_cast<double>(part.size()));
+        }
+    put({}, Z_FINISH);
 }
 
-void writeFile(const std::string& path, const Geometry& geometry, SampleType type, const void* data) {
-    writeAtomically(path, [&](OutputFile& out) {
-        out.write(headerText(geometry, type, "gzip"));
-        deflateInto(out, static_cast<const char*>(data), voxelCount(geometry.dims) * bytesPerSample(type));
-    });
-}
-
-} // namespace
-
-void writeNrrd(const Volume& volume, const std::string& path) {
-    withSamples(volume,
-                [&](const auto& values) { writeFile(path, volume.geometry(), volume.sampleType(), values.data()); });
-}
+void writeNrrd(const Volume& volume, const std::string& path) { write(volume, path, {}); }
 
 void writeNrrd(const Geometry& geometry, const Grid<float>& values, const std::string& path) {
     PELLUCID_CHECK(values.dims() == geometry.dims);
-    writeFile(path, geometry, SampleType::F32, values.data());
+    writeFile(path, geometry, SampleType::F32, std::as_bytes(std::span(values.data(), voxelCount(geometry.dims))), {});
 }
 
 void writeField(const Volume& volume, const Grid<float>& values, const std::string& path) {

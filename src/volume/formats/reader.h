@@ -37,9 +37,9 @@ Volume readLayout(const VolumeSource& source, const JobControl& job) {
 VolumeFormat nrrdFormat();
 VolumeFormat metaImageFormat();
 VolumeFormat niftiFormat();
-VolumeFormat vtiFormat();  ///< vtk_image.cpp
-VolumeFormat pvtiFormat(); ///< vtk_image.cpp
-VolumeFormat pvdFormat();  ///< vtk_collection.cpp
+VolumeFormat vtiFormat();   ///< vtk_image.cpp
+VolumeFormat pvtiFormat();  ///< vtk_image.cpp
+VolumeFormat pvdFormat();   ///< vtk_collection.cpp
 VolumeFormat dicomFormat(); ///< foreign.cpp
 VolumeFormat imageFormat(); ///< foreign.cpp
 

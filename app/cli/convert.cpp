@@ -1,0 +1,59 @@
+// `convert`: a volume in another file format.
+#include <filesystem>
+#include <optional>
+
+#include "commands.h"
+#include "output_files.h"
+#include "parse.h"
+#include "resolve.h"
+#include "volume/volume_writer.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    std::optional<SampleType> type;
+    std::string out;
+};
+
+Answer run(const Options& o, Progress& progress) {
+    if (o.out.empty()) throw UsageError("the file name is empty", "--out", "name the file to write");
+    atOption("--out " + o.out, [&] { checkVolumeSuffix(o.out); });
+    addOutputFile(o.out, "--out");
+    const Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
+    const Volume& volume = *opened.scene.volume;
+    std::vector<std::string> notices = opened.sessionNotices;
+    const std::vector<std::string> lost = writeVolume(volume, o.out, o.type, progress.phase("writing"));
+    notices.insert(notices.end(), lost.begin(), lost.end());
+    const SampleType type = o.type.value_or(volume.sampleType());
+    std::error_code ec;
+    const std::uintmax_t bytes = std::filesystem::file_size(o.out, ec);
+    Json json{{"command", "convert"},
+              {"file", o.out},
+              {"dims", jsonFromDims(volume.dims())},
+              {"type", name(type)},
+              {"spacing", jsonFromVector(volume.geometry().spacing)}};
+    if (!ec) json["file_bytes"] = bytes;
+    return {"wrote " + o.out + ": " + dimsText(volume.dims()) + " voxels, " + name(type) +
+                (ec ? "" : ", " + bytesText(bytes)) + "\n",
+            std::move(json), std::move(notices)};
+}
+
+} // namespace
+
+Command addConvert(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("convert", "Writes a volume in another file format, or a part of it");
+    const auto o = std::make_shared<Options>();
+    o->scene.addForData(*app);
+    addValue(
+        *app, "--type", "TYPE",
+        [o](const std::string& text, const std::string& option) { o->type = parseName<SampleType>(text, option); },
+        "type of the samples: u8 i8 u16 i16 u32 i32 f32 f64; what is rounded or cut is said (default: their own)");
+    addValue(*app, "--out", "FILE", o->out, anyText, "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti")
+        ->required();
+    return {app, [o](Progress& progress) { return run(*o, progress); }};
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,134 @@
+// Volumes that are written and read back.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include "support/temp_folder.h"
+#include "volume/loader.h"
+#include "volume/volume_writer.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::vector<std::string> kSuffixes{".nrrd", ".mha", ".mhd", ".nii", ".nii.gz", ".vti"};
+
+Volume load(const std::string& path) {
+    VolumeSource source;
+    source.path = path;
+    return loadVolume(source);
+}
+
+/// 3 x 4 x 5 voxels that turn by a quarter of their way about z: (0.6, 0.8, 0), (−0.8, 0.6, 0).
+Geometry oblique(WorldAxes axes) {
+    Geometry g;
+    g.dims = {3, 4, 5};
+    g.spacing = {0.5, 0.25, 2};
+    g.origin = {-10.5, 20.25, 4};
+    g.directions = Mat3(Vec3(0.6, 0.8, 0), Vec3(-0.8, 0.6, 0), Vec3(0, 0, 1));
+    g.worldAxes = axes;
+    return g;
+}
+
+template <class T>
+Volume volumeOf(const Geometry& geometry, std::optional<double> missing = {}) {
+    std::vector<T> values(voxelCount(geometry.dims));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<T>(3 * i + 1);
+    values[0] = std::numeric_limits<T>::lowest();
+    values[1] = std::numeric_limits<T>::max();
+    return {geometry, SampleArray<T>(std::move(values)), missing};
+}
+
+void requireSame(const Volume& read, const Volume& written, bool isRounded) {
+    CHECK(read.samples() == written.samples());
+    CHECK(read.dims() == written.dims());
+    CHECK(read.dataRange() == written.dataRange());
+    const Geometry &a = read.geometry(), &b = written.geometry();
+    const double tolerance = isRounded ? 1e-6 : 0;
+    CHECK(glm::length(a.spacing - b.spacing) <= tolerance);
+    CHECK(glm::length(a.origin - b.origin) <= 10 * tolerance);
+    for (int axis = 0; axis < 3; ++axis) CHECK(glm::length(a.directions[axis] - b.directions[axis]) <= 1e-6);
+}
+
+} // namespace
+
+TEMPLATE_TEST_CASE("a volume that is written is read back the same", "[writer]", std::uint8_t, std::int8_t,
+                   std::uint16_t, std::int16_t, std::uint32_t, std::int32_t, float, double) {
+    const TempFolder folder;
+    for (const WorldAxes axes : {WorldAxes::File, WorldAxes::Patient})
+        for (const std::string& suffix : kSuffixes) {
+            CAPTURE(suffix, axes == WorldAxes::Patient);
+            const Volume volume = volumeOf<TestType>(oblique(axes));
+            const std::string path = folder.path("a" + suffix);
+            const std::vector<std::string> lost = writeVolume(volume, path);
+            const Volume read = load(path);
+            const bool isNifti = suffix.starts_with(".nii"), isVtk = suffix == ".vti";
+            requireSame(read, volume, isNifti);
+            CHECK(read.notices.empty());
+            // What is not the same is said.
+            const bool sameWorld = read.geometry().worldAxes == axes;
+            CHECK(sameWorld == (isNifti ? axes == WorldAxes::Patient : !isVtk || axes == WorldAxes::File));
+            CHECK(lost.empty() == sameWorld);
+        }
+}
+
+TEST_CASE("a plain grid has no orientation in NIfTI", "[writer]") {
+    const TempFolder folder;
+    Geometry g;
+    g.dims = {3, 4, 5};
+    const Volume volume = volumeOf<float>(g);
+    CHECK(writeVolume(volume, folder.path("a.nii")).empty());
+    CHECK(load(folder.path("a.nii")).geometry().worldAxes == WorldAxes::File);
+    g.spacing = {0.1, 1, 1}; // which floats do not have
+    CHECK_THAT(writeVolume(volumeOf<float>(g), folder.path("b.nii")).at(0), Contains("seven digits"));
+}
+
+TEST_CASE("missing values are written as what each type has for them", "[writer]") {
+    const TempFolder folder;
+    const Geometry g = oblique(WorldAxes::Patient);
+    const Volume floats = volumeOf<float>(g, 13.0); // 3 · 4 + 1
+    REQUIRE(floats.invalidCount() == 1);
+    const auto said = writeVolume(floats, folder.path("f.nrrd"));
+    CHECK_THAT(said.at(0), Contains("1 voxel is without a valid value, and written as NaN"));
+    const Volume read = load(folder.path("f.nrrd"));
+    CHECK(read.invalidCount() == 1);
+    CHECK(std::isnan(read.value(4)));
+    const Volume whole = volumeOf<std::int16_t>(g, 13.0);
+    CHECK_THAT(writeVolume(whole, folder.path("i.mha")).at(0), Contains("does not say that 13 is missing"));
+    CHECK(load(folder.path("i.mha")).samples() == whole.samples());
+}
+
+TEST_CASE("another type says what it rounds and cuts", "[writer]") {
+    const TempFolder folder;
+    Geometry g;
+    g.dims = {2, 2, 2};
+    const std::vector<float> values{-1, 0.4f, 1, 254.6f, 255, 256, 1e9f, std::numeric_limits<float>::quiet_NaN()};
+    const Volume volume(g, SampleArray<float>(values));
+    const auto said = writeVolume(volume, folder.path("a.nrrd"), SampleType::U8);
+    REQUIRE(said.size() == 3);
+    CHECK_THAT(said[0], Contains("2 voxels are rounded"));
+    CHECK_THAT(said[1], Contains("3 voxels are cut"));
+    CHECK_THAT(said[2], Contains("1 voxel is without a valid value, and written as 0"));
+    const Volume read = load(folder.path("a.nrrd"));
+    const int expected[] = {0, 0, 1, 255, 255, 255, 255, 0};
+    for (std::size_t i = 0; i < 8; ++i) CHECK(read.value(i) == expected[i]);
+    const std::vector<std::uint8_t> bytes{0, 1, 2, 3, 4, 5, 6, 255};
+    CHECK(writeVolume(Volume(g, SampleArray<std::uint8_t>(bytes)), folder.path("b.nii"), SampleType::F64).empty());
+    CHECK(load(folder.path("b.nii")).value(7) == 255);
+}
+
+TEST_CASE("a volume that cannot be written leaves nothing", "[writer]") {
+    const TempFolder folder;
+    const Volume volume = volumeOf<float>(oblique(WorldAxes::Patient));
+    CHECK_THROWS_AS(writeVolume(volume, folder.path("a.png")), UsageError);
+    CHECK_THROWS_WITH(checkVolumeSuffix("a"), Contains(".nii.gz"));
+    CHECK_THROWS_AS(writeVolume(volume, folder.path("none/a.nii")), FileError);
+    std::stop_source stop;
+    stop.request_stop();
+    for (const std::string& suffix : kSuffixes)
+        CHECK_THROWS_AS(writeVolume(volume, folder.path("a" + suffix), {}, {stop.get_token(), {}}), Cancelled);
+    CHECK(folder.fileCount() == 0);
+}
