@@ -945,7 +945,7 @@ TEST_CASE("convert writes a volume, or a part of it, in another format", "[cli]"
     CHECK(whole["command"] == "convert");
     CHECK(whole["type"] == w.json({"info", "sample:shells", "--sample-size", "16"})["type"]);
     const json before = w.json({"info", "sample:shells", "--sample-size", "16"}), after = w.json({"info", "a.nii.gz"});
-    for (const char* key : {"dims", "spacing", "range", "invalid", "type"}) CHECK(after[key] == before[key]);
+    for (const char* key : {"dims", "spacing", "data_range", "invalid", "type"}) CHECK(after[key] == before[key]);
     const json part = w.json({"convert", "a.nii.gz", "--region", "2:10,0:16,4:8", "--type", "f64", "--out", "b.vti"});
     CHECK(part["dims"] == json({8, 16, 4}));
     CHECK(w.json({"info", "b.vti"})["type"] == "f64");

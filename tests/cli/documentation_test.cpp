@@ -22,10 +22,10 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",    "samples", "presets", "generate",  "render",   "measure",
-                                         "fields",  "propose", "refine",  "density",   "optimize", "probe",
-                                         "rulers",  "views",   "space",   "bench",     "sequence", "saliency-map",
-                                         "compare", "plot",    "film",    "reproduce", "study"};
+const std::vector<std::string> kCommands{"info",         "samples", "presets", "generate", "convert",   "render",
+                                         "measure",      "fields",  "propose", "refine",   "density",   "optimize",
+                                         "probe",        "rulers",  "views",   "space",    "bench",     "sequence",
+                                         "saliency-map", "compare", "plot",    "film",     "reproduce", "study"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
 

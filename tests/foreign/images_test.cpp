@@ -218,7 +218,8 @@ TEST_CASE("a flipped bit in a deflated TIFF file is refused or leaves the voxels
         damaged[at_] = static_cast<char>(damaged[at_] ^ (1 << bit % 8));
         CAPTURE(at_ - first, bit % 8);
         try {
-            CHECK(loadVolume(at(folder.write("damaged.tif", damaged))).samples() == sound.samples());
+            const Volume read = loadVolume(at(folder.write("damaged.tif", damaged)));
+            CHECK(read.samples() == sound.samples());
         } catch (const FileError& error) {
             CHECK_THAT(error.what(), Contains("damaged.tif"));
         }
