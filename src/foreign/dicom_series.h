@@ -14,8 +14,8 @@ class DicomSeries final : public ForeignVolume {
 public:
     /// `path`: a folder, with all that lies in it and in folders below; a DICOMDIR; or a file, which stands for all of
     /// its series in the same folder. `wanted`: a name of contents().arrays, a number of a series, its description or
-    /// UID; empty: the series with the most pictures. Throws FileError where there is none that can be shown, UsageError
-    /// where there is not the one that is wanted.
+    /// UID; empty: the series with the most pictures. Throws FileError where there is none that can be shown,
+    /// UsageError where there is not the one that is wanted.
     DicomSeries(const std::string& path, const std::string& wanted, const BeforeFile& before);
 
     void keepMiddle() override;

@@ -22,8 +22,8 @@ public:
     virtual ~ForeignVolume() = default;
     virtual void keepMiddle() = 0; ///< leaves of all slices the one in the middle
     virtual FileContents contents() const = 0;
-    virtual std::vector<std::string> files() const = 0;      ///< that hold its pixels
-    virtual ReaderLayout layout(int step) const = 0;         ///< throws UsageError where there is no such step
+    virtual std::vector<std::string> files() const = 0;  ///< that hold its pixels
+    virtual ReaderLayout layout(int step) const = 0;     ///< throws UsageError where there is no such step
     virtual std::uint64_t largestImageBytes() const = 0; ///< of what one of its files unpacks to
     /// Writes the voxels of a step as layout() says. Throws FileError for a file that cannot be unpacked; Cancelled.
     virtual void read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const = 0;
@@ -31,7 +31,8 @@ public:
 
 /// What `path` holds, as the program that has this linked can read it. `wanted`: a name among contents().arrays; empty:
 /// what is largest. Throws Error.
-std::unique_ptr<ForeignVolume> openForeign(const std::string& path, const std::string& wanted, const BeforeFile& before);
+std::unique_ptr<ForeignVolume> openForeign(const std::string& path, const std::string& wanted,
+                                           const BeforeFile& before);
 
 /// What has to be readable to open a path: the folder that its files are in.
 std::string folderToRead(const std::string& path);

@@ -381,8 +381,8 @@ TEST_CASE("faults of pieces are told with the file that has them", "[vtk][pieces
     CHECK_THAT(ofHeader(pvti("WholeExtent=\"3 2 -2 3 1 5\"", {kNumber}, {})), Contains("at least 1"));
     CHECK_THAT(ofHeader(fileOf(style, left)), Contains("not PImageData"));
     CHECK_THAT(ofHeader("<VTKFile type=\"PImageData\"/>"), Contains("no PImageData"));
-    for (const std::string& source : {std::string("../left.vti"), std::string("a/../../left.vti"),
-                                      std::string("/left.vti"), std::string("..")}) {
+    for (const std::string& source :
+         {std::string("../left.vti"), std::string("a/../../left.vti"), std::string("/left.vti"), std::string("..")}) {
         CAPTURE(source);
         CHECK_THAT(ofHeader(pvti(image, {kNumber}, {{leftText, source}})), Contains("outside its own folder"));
     }
