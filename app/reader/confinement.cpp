@@ -22,6 +22,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "volume/file_names.h"
+
 namespace pellucid::reader {
 
 namespace {
@@ -46,7 +48,6 @@ void allowReading(long ruleset, const std::string& path, bool isFolder) {
 
 /// Files may be opened below `folder` only, and only to be read; and those that links in it lead to.
 void allowReadingOnly(const std::string& folder) {
-    namespace fs = std::filesystem;
     landlock_ruleset_attr rules{};
     rules.handled_access_fs = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_WRITE_FILE |
                               LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR |
@@ -57,14 +58,12 @@ void allowReadingOnly(const std::string& folder) {
     const long ruleset = syscall(SYS_landlock_create_ruleset, &rules, sizeof rules, 0);
     if (ruleset < 0) return; // an older kernel
     allowReading(ruleset, folder, true);
-    constexpr int kMostEntries = 100'000, kMostFolders = 8;
-    std::error_code ec;
-    int entries = 0;
-    for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ec);
-         !ec && it != fs::recursive_directory_iterator() && entries < kMostEntries; it.increment(ec), ++entries) {
-        if (it.depth() >= kMostFolders) it.disable_recursion_pending();
-        if (it->is_symlink(ec) && it->is_regular_file(ec)) allowReading(ruleset, it->path().string(), false);
-    }
+    int left = 100'000;
+    anyFileBelow(folder, [&](const std::filesystem::directory_entry& file) {
+        std::error_code ec;
+        if (file.is_symlink(ec)) allowReading(ruleset, file.path().string(), false);
+        return --left == 0;
+    });
     syscall(SYS_landlock_restrict_self, ruleset, 0);
     close(static_cast<int>(ruleset));
 }

@@ -20,20 +20,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFiles = 100'000;
-constexpr int kMostFolders = 8; // below each other
 
 /// All files in a folder and below, in the order of their names.
 std::vector<std::string> filesBelow(const std::string& folder) {
     std::vector<std::string> files;
-    std::error_code ec;
-    for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ec);
-         !ec && it != fs::recursive_directory_iterator(); it.increment(ec)) {
-        if (it.depth() > kMostFolders) it.pop();
-        if (it->is_regular_file(ec)) files.push_back(it->path().string());
-        if (files.size() > kMostFiles)
-            throw FileError("there are more than " + std::to_string(kMostFiles) + " files in this folder", folder,
-                            "name the folder of one study");
-    }
+    anyFileBelow(folder, [&](const fs::directory_entry& file) {
+        files.push_back(file.path().string());
+        return files.size() > kMostFiles;
+    });
+    if (files.size() > kMostFiles)
+        throw FileError("there are more than " + std::to_string(kMostFiles) + " files in this folder", folder,
+                        "name the folder of one study");
     std::ranges::sort(files, countsBefore);
     return files;
 }
@@ -120,29 +117,6 @@ bool holds(const ValueRange& range) {
            range.hi <= static_cast<double>(std::numeric_limits<T>::max());
 }
 
-/// Calls use(a number of the type).
-template <class Use>
-void withKept(ValueType type, const Use& use) {
-    switch (type) {
-    case ValueType::U8:
-        return use(std::uint8_t{});
-    case ValueType::I8:
-        return use(std::int8_t{});
-    case ValueType::U16:
-        return use(std::uint16_t{});
-    case ValueType::I16:
-        return use(std::int16_t{});
-    case ValueType::U32:
-        return use(std::uint32_t{});
-    case ValueType::I32:
-        return use(std::int32_t{});
-    case ValueType::F32:
-        return use(float{});
-    default:
-        return use(double{});
-    }
-}
-
 /// The values of pictures, file by file as they are asked for.
 class PictureReader {
 public:
@@ -186,11 +160,10 @@ private:
 
 DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, const BeforeFile& before) : m_path(path) {
     std::error_code ec;
-    const bool isFolder = fs::is_directory(path, ec);
     std::vector<FileError> faults;
     std::vector<DicomFrame> frames;
     std::string ownUid;
-    if (isFolder) {
+    if (isFolder(path)) {
         frames = framesIn(filesBelow(path), before, faults);
     } else {
         before(bytesOfFile(path));
@@ -253,7 +226,7 @@ void DicomSeries::keepMiddle() {
     m_stack.geometry.dims.z = 1;
 }
 
-DicomSeries::Kept DicomSeries::keptAs() const {
+ValueType DicomSeries::keptType() const {
     ValueRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
     bool isWhole = true;
     for (const DicomFrame& frame : m_frames) {
@@ -263,14 +236,14 @@ DicomSeries::Kept DicomSeries::keptAs() const {
         range.hi = std::max(range.hi, stored.hi + frame.intercept);
     }
     if (!isWhole) // floats hold the numbers of 24 bits
-        return {m_frames.front().pixels.bitsStored <= 24 ? ValueType::F32 : ValueType::F64, false};
-    if (holds<std::uint8_t>(range)) return {ValueType::U8, true};
-    if (holds<std::int8_t>(range)) return {ValueType::I8, true};
-    if (holds<std::uint16_t>(range)) return {ValueType::U16, true};
-    if (holds<std::int16_t>(range)) return {ValueType::I16, true};
-    if (holds<std::uint32_t>(range)) return {ValueType::U32, true};
-    if (holds<std::int32_t>(range)) return {ValueType::I32, true};
-    return {ValueType::F64, true};
+        return m_frames.front().pixels.bitsStored <= 24 ? ValueType::F32 : ValueType::F64;
+    if (holds<std::uint8_t>(range)) return ValueType::U8;
+    if (holds<std::int8_t>(range)) return ValueType::I8;
+    if (holds<std::uint16_t>(range)) return ValueType::U16;
+    if (holds<std::int16_t>(range)) return ValueType::I16;
+    if (holds<std::uint32_t>(range)) return ValueType::U32;
+    if (holds<std::int32_t>(range)) return ValueType::I32;
+    return ValueType::F64;
 }
 
 ReaderLayout DicomSeries::layout(int step) const {
@@ -278,7 +251,7 @@ ReaderLayout DicomSeries::layout(int step) const {
     ReaderLayout answer;
     FileLayout& layout = answer.layout;
     const Geometry& g = m_stack.geometry;
-    layout.type = keptAs().type;
+    layout.type = keptType();
     const int samples = m_frames.front().pixels.samples;
     if (samples > 1) layout.axes.push_back({samples, true});
     for (int a = 0; a < 3; ++a) layout.axes.push_back({g.dims[a]});
@@ -331,7 +304,6 @@ void DicomSeries::read(int step, std::span<std::byte> voxels, const BeforeFile& 
     const std::size_t samples = static_cast<std::size_t>(pixels.columns) * static_cast<std::size_t>(pixels.rows) *
                                 static_cast<std::size_t>(pixels.samples);
     const std::vector<DicomLayer>& layers = m_stack.steps.at(static_cast<std::size_t>(step));
-    const Kept kept = keptAs();
     PictureReader pictures(m_frames, before);
     std::map<std::size_t, std::vector<double>> values; // the last two pictures
     const auto picture = [&](std::size_t n) -> const std::vector<double>& {
@@ -340,7 +312,7 @@ void DicomSeries::read(int step, std::span<std::byte> voxels, const BeforeFile& 
         pictures.read(n, read);
         return values[n] = std::move(read);
     };
-    withKept(kept.type, [&](auto zero) {
+    withType(keptType(), [&](auto zero) {
         using T = decltype(zero);
         PELLUCID_CHECK(voxels.size() == samples * layers.size() * sizeof(T));
         T* to = reinterpret_cast<T*>(voxels.data());

@@ -26,11 +26,8 @@ public:
     void read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const override;
 
 private:
-    struct Kept {
-        ValueType type = ValueType::U8;
-        bool exact = true; ///< stored numbers, with a whole number added
-    };
-    Kept keptAs() const;
+    /// The smallest type that holds all values, or floats.
+    ValueType keptType() const;
 
     std::string m_path, m_name;
     std::vector<std::string> m_names, m_details; ///< of all series

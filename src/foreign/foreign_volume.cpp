@@ -2,13 +2,14 @@
 
 #include <filesystem>
 
+#include "volume/formats/file_check.h"
+
 namespace pellucid {
 
 namespace fs = std::filesystem;
 
 std::string folderToRead(const std::string& path) {
-    std::error_code ec;
-    if (fs::is_directory(path, ec)) return path;
+    if (isFolder(path)) return path;
     const std::string folder = fs::path(path).parent_path().string();
     return folder.empty() ? "." : folder;
 }

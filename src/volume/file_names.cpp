@@ -192,6 +192,17 @@ std::vector<std::string> filesIn(const std::string& folder) {
     return found;
 }
 
+bool anyFileBelow(const std::string& folder, const std::function<bool(const fs::directory_entry&)>& found) {
+    constexpr int kMostFolders = 8;
+    std::error_code ec;
+    for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ec);
+         !ec && it != fs::recursive_directory_iterator(); it.increment(ec)) {
+        if (it.depth() >= kMostFolders) it.disable_recursion_pending();
+        if (it->is_regular_file(ec) && found(*it)) return true;
+    }
+    return false;
+}
+
 std::optional<NumberedNames> numberedBy(const NumberedName& name, const std::vector<std::string>& paths) {
     NumberedNames names{name, {}};
     for (const std::string& path : paths) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +29,9 @@ bool matchesGlob(const std::string& pattern, const std::string& name);
 std::vector<std::string> filesNumbered(const NumberedName& pattern);
 std::vector<std::string> filesMatching(const std::string& glob);
 std::vector<std::string> filesIn(const std::string& folder);
+/// Whether found() is true of a file in a folder, or in up to eight folders below each other, in no order; what follows
+/// that file is not looked at.
+bool anyFileBelow(const std::string& folder, const std::function<bool(const std::filesystem::directory_entry&)>& found);
 
 /// Paths that differ in one number, ascending.
 struct NumberedNames {

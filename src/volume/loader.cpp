@@ -22,9 +22,11 @@ const std::vector<VolumeFormat>& formats() {
     return kFormats;
 }
 
-bool isFolder(const std::string& path) {
-    std::error_code ec;
-    return std::filesystem::is_directory(path, ec);
+/// By VolumeFormat::content; null where no format has this one.
+const VolumeFormat* formatOfContent(const std::string& content) {
+    for (const VolumeFormat& format : formats())
+        if (format.content != nullptr && content == format.content) return &format;
+    return nullptr;
 }
 
 /// Of a folder whose files are together one volume; null for others.
@@ -39,13 +41,7 @@ const VolumeFormat* findFormat(const std::string& path) {
     for (const VolumeFormat& format : formats())
         for (const std::string& suffix : format.suffixes)
             if (lower.size() > suffix.size() && lower.ends_with(suffix)) return &format;
-    if (isFolder(path)) return formatOfFolder(path);
-    const std::string content = contentOf(path);
-    for (const VolumeFormat& format : formats())
-        if ((content == "a DICOM file" && format.name == std::string("DICOM")) ||
-            (content == "a TIFF image" && format.name == std::string("pictures")))
-            return &format;
-    return nullptr;
+    return isFolder(path) ? formatOfFolder(path) : formatOfContent(contentOf(path));
 }
 
 /// Throws FileError where there is none for this suffix.

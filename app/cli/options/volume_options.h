@@ -1,6 +1,5 @@
 // VOLUME, --allow-outside, --frames, --frame, --array, --cache, --raw, --spacing, --skip, --missing, --range,
-// --component, --axes,
-// --sample-size, --seed, --downsample, --region: what is opened.
+// --component, --axes, --sample-size, --seed, --downsample, --region: what is opened.
 #pragma once
 
 #include <cstdint>

@@ -13,6 +13,11 @@ namespace pellucid {
 
 namespace fs = std::filesystem;
 
+bool isFolder(const std::string& path) {
+    std::error_code ec;
+    return fs::is_directory(path, ec);
+}
+
 std::uint64_t readableFileBytes(const std::string& path) {
     tellOfReading(path);
     std::error_code ec;

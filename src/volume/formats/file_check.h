@@ -14,6 +14,8 @@
 
 namespace pellucid {
 
+bool isFolder(const std::string& path);
+
 /// Size of a file that can be read. Throws FileError: no such file, a folder, not permitted.
 std::uint64_t readableFileBytes(const std::string& path);
 

@@ -16,12 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char *kDicomContent = "a DICOM file", *kTiffContent = "a TIFF image"; ///< as describeContent() has it
 constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader";
-
-bool isFolder(const std::string& path) {
-    std::error_code ec;
-    return fs::is_directory(path, ec);
-}
 
 ReaderRequest requestOf(const VolumeSource& source, const char* program) {
     ReaderRequest request;
@@ -36,14 +32,14 @@ ReaderRequest requestOf(const VolumeSource& source, const char* program) {
 ReaderRequest dicomRequest(const VolumeSource& source) {
     if (!isFolder(source.path)) {
         const std::string head = fileHead(source.path, 1024), content = describeContent(head);
-        if (content != "a DICOM file" && content != "binary data") throw notOfFormat("a DICOM file", source.path, head);
+        if (content != kDicomContent && content != "binary data") throw notOfFormat("a DICOM file", source.path, head);
     }
     return requestOf(source, kOfDicom);
 }
 ReaderRequest imageRequest(const VolumeSource& source) {
     if (!isFolder(source.path)) {
         const std::string head = fileHead(source.path, 1024);
-        if (describeContent(head) != "a TIFF image") throw notOfFormat("a TIFF image", source.path, head);
+        if (describeContent(head) != kTiffContent) throw notOfFormat("a TIFF image", source.path, head);
     }
     return requestOf(source, kOfImages);
 }
@@ -87,33 +83,25 @@ bool hasSeveralPages(const std::string& path) {
     return in && number(head.data(), offset) != 0;
 }
 
-/// Files below `folder`, up to `count` of them, until `found` is true of one.
-bool anyBelow(const std::string& folder, int count, const auto& found) {
-    constexpr int kMostFolders = 8;
-    std::error_code ec;
-    for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ec);
-         !ec && it != fs::recursive_directory_iterator() && count > 0; it.increment(ec)) {
-        if (it.depth() >= kMostFolders) it.disable_recursion_pending();
-        if (!it->is_regular_file(ec)) continue;
-        --count;
-        if (found(it->path().string())) return true;
-    }
-    return false;
-}
-
 bool isTiffName(const std::string& suffix) { return suffix == ".tif" || suffix == ".tiff"; }
 
 } // namespace
 
-bool isDicom(const std::string& path) { return contentOf(path) == "a DICOM file"; }
+bool isDicom(const std::string& path) { return contentOf(path) == kDicomContent; }
 
 bool holdsDicom(const std::string& folder) {
-    constexpr int kLookedAt = 64;
     // A folder of other volumes may have folders of DICOM in it.
     const bool hasVolumes = std::ranges::any_of(filesIn(folder), [](const std::string& path) {
-        return hasVolumeSuffix(path) && !isTiffName(volumeSuffix(path)) && !isDicom(path);
+        return !isTiffName(volumeSuffix(path)) && !isDicom(path) && hasVolumeSuffix(path);
     });
-    return !hasVolumes && anyBelow(folder, kLookedAt, isDicom);
+    if (hasVolumes) return false;
+    int left = 64; // files that are looked at
+    bool found = false;
+    anyFileBelow(folder, [&](const fs::directory_entry& file) {
+        found = isDicom(file.path().string());
+        return found || --left == 0;
+    });
+    return found;
 }
 
 std::vector<std::string> imagesIn(const std::string& folder) {
@@ -145,11 +133,14 @@ Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job) {
 }
 
 VolumeFormat dicomFormat() {
-    return {"DICOM", {".dcm", ".dicom", ".ima"}, describe<dicomRequest>, read<dicomRequest>, dataFiles<dicomRequest>};
+    return {
+        "DICOM",      {".dcm", ".dicom", ".ima"}, describe<dicomRequest>, read<dicomRequest>, dataFiles<dicomRequest>,
+        kDicomContent};
 }
 
 VolumeFormat imageFormat() {
-    return {"pictures", {".tif", ".tiff"}, describe<imageRequest>, read<imageRequest>, dataFiles<imageRequest>};
+    return {"pictures",         {".tif", ".tiff"},       describe<imageRequest>,
+            read<imageRequest>, dataFiles<imageRequest>, kTiffContent};
 }
 
 } // namespace pellucid

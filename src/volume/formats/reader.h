@@ -21,6 +21,7 @@ struct VolumeFormat {
     Volume (*read)(const VolumeSource& source, const JobControl& job);
     /// The files that hold the samples, where the header names others. Throws FileError. Null: they are in the file.
     std::vector<std::string> (*dataFiles)(const std::string& path) = nullptr;
+    const char* content = nullptr; ///< describeContent() of its files, where that tells the format under any name
 };
 
 /// The `describe` and `read` of a format whose header becomes a layout: layoutOf(source, step, job), where `step` is

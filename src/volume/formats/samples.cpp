@@ -25,17 +25,6 @@ namespace pellucid {
 
 namespace {
 
-/// Calls use(T{}) with the type that a value has in the file.
-template <class Use>
-auto withType(ValueType type, const Use& use) {
-    using Value = std::variant<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t, std::int32_t,
-                               std::uint64_t, std::int64_t, float, double>;
-    static constexpr Value kZeros[] = {std::uint8_t{},  std::int8_t{},  std::uint16_t{}, std::int16_t{},
-                                       std::uint32_t{}, std::int32_t{}, std::uint64_t{}, std::int64_t{},
-                                       float{},         double{}};
-    return std::visit(use, kZeros[static_cast<std::size_t>(type)]);
-}
-
 /// 64-bit integers have no sample type of their own.
 template <class T>
 using KeptType = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, double, T>;

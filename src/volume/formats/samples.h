@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "volume/file_contents.h"
@@ -18,6 +19,16 @@ namespace pellucid {
 /// One number in a file.
 enum class ValueType { U8, I8, U16, I16, U32, I32, U64, I64, F32, F64 };
 std::uint64_t bytesPerValue(ValueType type);
+/// Calls use(T{}) with the type that a value has in the file.
+template <class Use>
+auto withType(ValueType type, const Use& use) {
+    using Value = std::variant<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t, std::int32_t,
+                               std::uint64_t, std::int64_t, float, double>;
+    static constexpr Value kZeros[] = {std::uint8_t{},  std::int8_t{},  std::uint16_t{}, std::int16_t{},
+                                       std::uint32_t{}, std::int32_t{}, std::uint64_t{}, std::int64_t{},
+                                       float{},         double{}};
+    return std::visit(use, kZeros[static_cast<std::size_t>(type)]);
+}
 
 /// One axis of a file's array.
 struct FileAxis {

@@ -52,16 +52,15 @@ class OpenFile {
 public:
     OpenFile() = default;
     explicit OpenFile(int number) : m_number(number) {}
-    ~OpenFile() { close(); }
+    ~OpenFile() {
+        if (m_number >= 0) ::close(m_number);
+    }
     OpenFile(OpenFile&& other) noexcept : m_number(std::exchange(other.m_number, -1)) {}
     OpenFile& operator=(OpenFile&& other) noexcept {
         std::swap(m_number, other.m_number);
         return *this;
     }
     int number() const { return m_number; }
-    void close() {
-        if (m_number >= 0) ::close(std::exchange(m_number, -1));
-    }
 
 private:
     int m_number = -1;
@@ -164,9 +163,12 @@ private:
         failToStart(m_program, std::generic_category().message(failure));
     }
 
-    /// Ends it; returns how it ended.
-    int end() {
+    void end() {
         ::kill(m_process, SIGKILL);
+        waitForEnd();
+    }
+    /// How it ended.
+    int waitForEnd() {
         int status = 0;
         while (::waitpid(m_process, &status, 0) < 0 && errno == EINTR) {
         }
@@ -216,10 +218,7 @@ private:
                         "the file is damaged, or not what it says it is: copy it again");
     }
     [[noreturn]] void failAtItsEnd() {
-        int status = 0; // it has closed its end, and is about to be gone
-        while (::waitpid(m_process, &status, 0) < 0 && errno == EINTR) {
-        }
-        m_process = -1;
+        const int status = waitForEnd(); // it has closed its end, and is about to be gone
         if (WIFEXITED(status) && WEXITSTATUS(status) == 127) failToStart(m_program, "a library is missing");
         if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) failSuddenly("the file takes too long to read");
         throw FileError("the program that reads this format crashed on it" +
