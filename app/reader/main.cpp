@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iostream>
+#include <span>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -21,12 +22,22 @@ constexpr std::uint64_t kSpare = 256u << 20; ///< for libraries, besides what fi
 
 void say(const nlohmann::json& message) { std::cout << message.dump() << "\n" << std::flush; }
 
-/// Memory for the voxels, which are the asker's.
-std::byte* mapVoxels(std::uint64_t bytes) {
-    void* const at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, kVoxels, 0);
-    if (at == MAP_FAILED) throw FileError("there is no memory for the voxels", "", "use a smaller volume");
-    return static_cast<std::byte*>(at);
-}
+/// Memory for the voxels, which is the asker's.
+class Voxels {
+public:
+    explicit Voxels(std::uint64_t bytes) : m_bytes(bytes) {
+        m_at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, kVoxels, 0);
+        if (m_at == MAP_FAILED) throw FileError("there is no memory for the voxels", "", "use a smaller volume");
+    }
+    ~Voxels() { munmap(m_at, m_bytes); }
+    Voxels(const Voxels&) = delete;
+    Voxels& operator=(const Voxels&) = delete;
+    std::span<std::byte> bytes() const { return {static_cast<std::byte*>(m_at), m_bytes}; }
+
+private:
+    void* m_at;
+    std::size_t m_bytes;
+};
 
 JobControl progressTeller() {
     return {{}, [last = -1.0](double done) mutable {
@@ -57,19 +68,19 @@ void answer(const ReaderRequest& request) {
     const BeforeFile before = [&](std::uint64_t bytes) { limits.beforeFile(bytes); };
     before(0);
     const std::unique_ptr<ForeignVolume> volume = openForeign(request.path, request.array, before);
-    if (request.middleOnly) volume->keepMiddle();
     if (request.task == ReaderRequest::Task::Describe) return say(jsonOf(volume->contents()));
     if (request.task == ReaderRequest::Task::List) return say({{"files", volume->files()}});
     const ReaderLayout layout = volume->layout(request.step);
     say(jsonOf(layout));
-    std::string line;
-    if (!std::getline(std::cin, line)) return; // nobody wants them
-    const std::uint64_t bytes = bytesOf(layout.layout, request.path);
-    limits.setVoxels(bytes);
     limits.setImage(volume->largestImageBytes());
-    before(0);
-    volume->read(request.step, {mapVoxels(bytes), bytes}, before, progressTeller());
-    say({{"done", true}});
+    for (std::string line; std::getline(std::cin, line);) { // until nobody wants more
+        const ReaderBox box = boxIn(nlohmann::json::parse(line, nullptr, false));
+        const std::uint64_t bytes = bytesOf(box, layout, request.path);
+        limits.setVoxels(bytes);
+        before(0);
+        volume->read(request.step, box, Voxels(bytes).bytes(), before, progressTeller());
+        say({{"done", true}});
+    }
 }
 
 } // namespace

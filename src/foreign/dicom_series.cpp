@@ -221,11 +221,6 @@ DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, con
     m_stack = stackOf(m_frames, path);
 }
 
-void DicomSeries::keepMiddle() {
-    for (std::vector<DicomLayer>& layers : m_stack.steps) layers = {layers[layers.size() / 2]};
-    m_stack.geometry.dims.z = 1;
-}
-
 ValueType DicomSeries::keptType() const {
     ValueRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
     bool isWhole = true;
@@ -299,10 +294,12 @@ std::uint64_t DicomSeries::largestImageBytes() const {
     return most;
 }
 
-void DicomSeries::read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const {
+void DicomSeries::read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
+                       const JobControl& job) const {
     const DicomPixels& pixels = m_frames.front().pixels;
-    const std::size_t samples = static_cast<std::size_t>(pixels.columns) * static_cast<std::size_t>(pixels.rows) *
-                                static_cast<std::size_t>(pixels.samples);
+    const glm::ivec2 size(pixels.columns, pixels.rows);
+    const auto perVoxel = static_cast<std::size_t>(pixels.samples);
+    const std::size_t samples = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * perVoxel;
     const std::vector<DicomLayer>& layers = m_stack.steps.at(static_cast<std::size_t>(step));
     PictureReader pictures(m_frames, before);
     std::map<std::size_t, std::vector<double>> values; // the last two pictures
@@ -314,10 +311,10 @@ void DicomSeries::read(int step, std::span<std::byte> voxels, const BeforeFile& 
     };
     withType(keptType(), [&](auto zero) {
         using T = decltype(zero);
-        PELLUCID_CHECK(voxels.size() == samples * layers.size() * sizeof(T));
-        T* to = reinterpret_cast<T*>(voxels.data());
-        for (std::size_t k = 0; k < layers.size(); ++k) {
-            const DicomLayer& layer = layers[k];
+        const VoxelRegion& region = box.region;
+        std::vector<T> slice(samples);
+        for (int z = region.lo.z; z < region.hi.z; ++z) {
+            const DicomLayer& layer = layers.at(static_cast<std::size_t>(z));
             std::erase_if(values,
                           [&](const auto& entry) { return entry.first != layer.before && entry.first != layer.after; });
             const std::vector<double>& from = picture(layer.before);
@@ -326,10 +323,11 @@ void DicomSeries::read(int step, std::span<std::byte> voxels, const BeforeFile& 
                 double value = from[i];
                 if (layer.toAfter > 0) value += layer.toAfter * (other[i] - from[i]);
                 if constexpr (std::is_integral_v<T>) value = std::round(value);
-                *to++ = static_cast<T>(value);
+                slice[i] = static_cast<T>(value);
             }
+            voxels = copyFromSlice(std::as_bytes(std::span(slice)), size, perVoxel * sizeof(T), region, voxels);
             job.throwIfStopped();
-            job.report(static_cast<double>(k + 1) / static_cast<double>(layers.size()));
+            job.report(static_cast<double>(z + 1 - region.lo.z) / static_cast<double>(region.hi.z - region.lo.z));
         }
     });
 }

@@ -18,12 +18,12 @@ public:
     /// UsageError where there is not the one that is wanted.
     DicomSeries(const std::string& path, const std::string& wanted, const BeforeFile& before);
 
-    void keepMiddle() override;
     FileContents contents() const override;
     std::vector<std::string> files() const override;
     ReaderLayout layout(int step) const override;
     std::uint64_t largestImageBytes() const override;
-    void read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const override;
+    void read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
+              const JobControl& job) const override;
 
 private:
     /// The smallest type that holds all values, or floats.

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "base/job.h"
 #include "volume/process/reader_messages.h"
 
@@ -20,13 +22,14 @@ using BeforeFile = std::function<void(std::uint64_t bytes)>;
 class ForeignVolume {
 public:
     virtual ~ForeignVolume() = default;
-    virtual void keepMiddle() = 0; ///< leaves of all slices the one in the middle
     virtual FileContents contents() const = 0;
     virtual std::vector<std::string> files() const = 0;  ///< that hold its pixels
     virtual ReaderLayout layout(int step) const = 0;     ///< throws UsageError where there is no such step
     virtual std::uint64_t largestImageBytes() const = 0; ///< of what one of its files unpacks to
-    /// Writes the voxels of a step as layout() says. Throws FileError for a file that cannot be unpacked; Cancelled.
-    virtual void read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const = 0;
+    /// Writes a box of a step as layout() says, which lies in its level. Throws FileError for a file that cannot be
+    /// unpacked; Cancelled.
+    virtual void read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
+                      const JobControl& job) const = 0;
 };
 
 /// What `path` holds, as the program that has this linked can read it. `wanted`: a name among contents().arrays; empty:
@@ -36,6 +39,10 @@ std::unique_ptr<ForeignVolume> openForeign(const std::string& path, const std::s
 
 /// What has to be readable to open a path: the folder that its files are in.
 std::string folderToRead(const std::string& path);
+/// Copies the voxels of a box that lie in a slice: `slice` has `size` voxels of `bytesPerVoxel` bytes each. Returns what
+/// of `to` is left.
+std::span<std::byte> copyFromSlice(std::span<const std::byte> slice, const glm::ivec2& size, std::size_t bytesPerVoxel,
+                                   const VoxelRegion& region, std::span<std::byte> to);
 /// Of a file; 0 where it is not there.
 std::uint64_t bytesOfFile(const std::string& path);
 

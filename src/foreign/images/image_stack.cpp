@@ -69,12 +69,6 @@ void ImageStack::putInOrder() {
     }
     if (m_shape.samples > 1 && m_order.channels > 1)
         throw failure(m_path, "both pixels and pages have channels, which is not supported");
-    m_slices = m_order.slices;
-}
-
-void ImageStack::keepMiddle() {
-    m_firstSlice = m_slices / 2;
-    m_slices = 1;
 }
 
 const ImageStack::Page& ImageStack::pageAt(int slice, int channel, int step) const {
@@ -96,7 +90,7 @@ ReaderLayout ImageStack::layout(int step) const {
     FileLayout& layout = answer.layout;
     layout.type = m_shape.type;
     if (m_shape.samples > 1) layout.axes.push_back({m_shape.samples, true});
-    for (const int size : {m_shape.width, m_shape.height, m_slices}) layout.axes.push_back({size});
+    for (const int size : {m_shape.width, m_shape.height, m_order.slices}) layout.axes.push_back({size});
     if (m_order.channels > 1) layout.axes.push_back({m_order.channels, true});
     layout.spacing = m_order.spacing;
     layout.notices = m_notices;
@@ -113,27 +107,29 @@ FileContents ImageStack::contents() const {
     return contents;
 }
 
-void ImageStack::read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const {
+void ImageStack::read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
+                      const JobControl& job) const {
     std::unique_ptr<PictureFile> file;
     std::size_t opened = m_files.size(); // none
-    const auto bytes = static_cast<std::size_t>(bytesOf(m_shape));
-    const std::size_t pages = static_cast<std::size_t>(m_order.channels) * static_cast<std::size_t>(m_slices);
-    PELLUCID_CHECK(voxels.size() == pages * bytes);
-    std::size_t done = 0;
-    for (int channel = 0; channel < m_order.channels; ++channel)
-        for (int slice = 0; slice < m_slices; ++slice) {
-            const Page& page = pageAt(m_firstSlice + slice, channel, step);
-            if (opened != page.file) {
-                file = openPictures(m_files[page.file]);
-                opened = page.file;
-            }
-            before(bytes);
-            if (!file->goTo(page.page) || !(file->shape() == m_shape))
-                throw failure(m_files[page.file], "the file has changed while it was read");
-            file->read(voxels.subspan(done * bytes, bytes));
-            job.throwIfStopped();
-            job.report(static_cast<double>(++done) / static_cast<double>(pages));
+    std::vector<std::byte> slice(static_cast<std::size_t>(bytesOf(m_shape)));
+    const glm::ivec2 size(m_shape.width, m_shape.height);
+    const std::size_t bytesPerVoxel =
+        slice.size() / (static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+    const VoxelRegion& region = box.region;
+    for (int z = region.lo.z; z < region.hi.z; ++z) {
+        const Page& page = pageAt(z, box.component, step);
+        if (opened != page.file) {
+            file = openPictures(m_files[page.file]);
+            opened = page.file;
         }
+        before(slice.size());
+        if (!file->goTo(page.page) || !(file->shape() == m_shape))
+            throw failure(m_files[page.file], "the file has changed while it was read");
+        file->read(slice);
+        voxels = copyFromSlice(slice, size, bytesPerVoxel, region, voxels);
+        job.throwIfStopped();
+        job.report(static_cast<double>(z + 1 - region.lo.z) / static_cast<double>(region.hi.z - region.lo.z));
+    }
 }
 
 } // namespace pellucid

@@ -17,12 +17,12 @@ public:
     /// empty. Throws FileError for what cannot be read, or where pictures are not alike.
     ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before);
 
-    void keepMiddle() override;
     FileContents contents() const override;
     std::vector<std::string> files() const override { return m_files; }
     ReaderLayout layout(int step) const override;
     std::uint64_t largestImageBytes() const override;
-    void read(int step, std::span<std::byte> voxels, const BeforeFile& before, const JobControl& job) const override;
+    void read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
+              const JobControl& job) const override;
 
 private:
     /// A picture: page `page` of file `file`.
@@ -38,7 +38,6 @@ private:
     std::vector<Page> m_pages; ///< as they follow each other
     PageOrder m_order;         ///< with all numbers known
     PageShape m_shape;         ///< of all pages
-    int m_firstSlice = 0, m_slices = 0;
     std::vector<std::string> m_notices;
 };
 

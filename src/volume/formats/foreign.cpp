@@ -127,9 +127,7 @@ bool holdsImages(const std::string& folder) {
 }
 
 Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job) {
-    ReaderRequest request = dicomRequest(source);
-    request.middleOnly = true;
-    return readInProcess(source, request, job);
+    return readMiddleInProcess(source, dicomRequest(source), job);
 }
 
 VolumeFormat dicomFormat() {

@@ -15,7 +15,6 @@
 #include <glm/matrix.hpp>
 
 #include "base/error.h"
-#include "volume/excerpt.h"
 #include "volume/formats/byte_source.h"
 #include "volume/formats/bzip2_bytes.h"
 #include "volume/formats/inflate_index.h"
@@ -665,7 +664,7 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
             using Kept = decltype(keptZero);
             const bool inFile = std::is_same_v<T, Kept> && isAsInMemory(layout, selection) &&
                                 voxelCount(selection.dims) * sizeof(Kept) >= kMapBytes;
-            plan = planExcerpt(source, selection.dims, sampleTypeOf<Kept>(), inFile);
+            plan = layout.plan ? *layout.plan : planExcerpt(source, selection.dims, sampleTypeOf<Kept>(), inFile);
             read = readAs<T, Kept>(layout, selection, plan, source, job);
         };
         if (std::is_integral_v<T> && sizeof(T) == 8) notices.emplace_back("64-bit integers are kept as 64-bit floats");

@@ -1,5 +1,6 @@
 #include "volume/process/reader_messages.h"
 
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -16,14 +17,24 @@ using nlohmann::json;
 
 constexpr int kMostNames = 100'000;
 constexpr std::size_t kMostCharacters = 4000;
+constexpr std::size_t kMostLevels = 64;
+constexpr int kMostWhole = std::numeric_limits<int>::max();
 
 JsonValue valueOf(const json& message) { return JsonValue(message, "the answer of pellucid-reader"); }
 
 json numbersOf(const Vec3& v) { return json::array({v.x, v.y, v.z}); }
+json wholesOf(const Int3& v) { return json::array({v.x, v.y, v.z}); }
 
 Vec3 vectorIn(const JsonValue& value) {
     const std::vector<JsonValue> items = value.items(3);
     return {items[0].number(), items[1].number(), items[2].number()};
+}
+
+Int3 wholesIn(const JsonValue& value, int least) {
+    const std::vector<JsonValue> items = value.items(3);
+    Int3 v;
+    for (int a = 0; a < 3; ++a) v[a] = items[static_cast<std::size_t>(a)].whole(least, kMostWhole);
+    return v;
 }
 
 std::string textIn(const JsonValue& value) { return printable(value.text().substr(0, kMostCharacters)); }
@@ -43,8 +54,7 @@ json jsonOf(const ReaderRequest& request) {
     return {{"task", static_cast<int>(request.task)},
             {"path", request.path},
             {"array", request.array},
-            {"step", request.step},
-            {"middle_only", request.middleOnly}};
+            {"step", request.step}};
 }
 
 ReaderRequest requestIn(const json& message) {
@@ -53,14 +63,13 @@ ReaderRequest requestIn(const json& message) {
     request.task = static_cast<ReaderRequest::Task>(value["task"].whole(0, 2));
     request.path = value["path"].text();
     request.array = value["array"].text();
-    request.step = value["step"].whole(0, std::numeric_limits<int>::max());
-    request.middleOnly = value["middle_only"].boolean();
+    request.step = value["step"].whole(0, kMostWhole);
     return request;
 }
 
 json jsonOf(const FileContents& contents) {
     return {{"contents",
-             {{"dims", {contents.dims.x, contents.dims.y, contents.dims.z}},
+             {{"dims", wholesOf(contents.dims)},
               {"type", static_cast<int>(contents.type)},
               {"components", contents.components},
               {"steps", contents.steps},
@@ -73,13 +82,11 @@ json jsonOf(const FileContents& contents) {
 
 FileContents contentsIn(const json& message) {
     const JsonValue value = valueOf(message)["contents"];
-    constexpr int kMost = std::numeric_limits<int>::max();
     FileContents contents;
-    const std::vector<JsonValue> dims = value["dims"].items(3);
-    for (int a = 0; a < 3; ++a) contents.dims[a] = dims[static_cast<std::size_t>(a)].whole(1, kMost);
+    contents.dims = wholesIn(value["dims"], 1);
     contents.type = static_cast<SampleType>(value["type"].whole(0, static_cast<int>(SampleType::F64)));
-    contents.components = value["components"].whole(1, kMost);
-    contents.steps = value["steps"].whole(1, kMost);
+    contents.components = value["components"].whole(1, kMostWhole);
+    contents.steps = value["steps"].whole(1, kMostWhole);
     contents.times = value["times"].numbers();
     contents.timeUnit = textIn(value["unit"]);
     contents.array = textIn(value["array"]);
@@ -101,7 +108,13 @@ json jsonOf(const ReaderLayout& answer) {
                {numbersOf(layout.directions[0]), numbersOf(layout.directions[1]), numbersOf(layout.directions[2])}},
               {"patient", layout.worldAxes == WorldAxes::Patient},
               {"array", layout.array},
+              {"layers_at_once", answer.layersAtOnce},
               {"notices", layout.notices}};
+    for (const ReaderLevel& level : answer.levels)
+        text["levels"].push_back({{"dims", wholesOf(level.dims)},
+                                  {"factors", wholesOf(level.factors)},
+                                  {"spacing", numbersOf(level.spacing)},
+                                  {"origin", numbersOf(level.origin)}});
     if (answer.missing) text["missing"] = *answer.missing;
     return {{"layout", std::move(text)}};
 }
@@ -124,7 +137,27 @@ ReaderLayout layoutIn(const json& message) {
     layout.notices = textsIn(value["notices"]);
     layout.bigEndian = std::endian::native == std::endian::big;
     if (value.has("missing")) answer.missing = value["missing"].number();
+    answer.layersAtOnce = value["layers_at_once"].whole(1, kMostWhole);
+    if (!value.has("levels")) return answer;
+    for (const JsonValue& level : value["levels"].items()) {
+        if (answer.levels.size() >= kMostLevels) value.fail("there are too many levels", "");
+        answer.levels.push_back({wholesIn(level["dims"], 1), wholesIn(level["factors"], 1), vectorIn(level["spacing"]),
+                                 vectorIn(level["origin"])});
+    }
     return answer;
+}
+
+json jsonOf(const ReaderBox& box) {
+    return {{"level", box.level},
+            {"lo", wholesOf(box.region.lo)},
+            {"hi", wholesOf(box.region.hi)},
+            {"component", box.component}};
+}
+
+ReaderBox boxIn(const json& message) {
+    const JsonValue value = valueOf(message);
+    return {value["level"].whole(0, kMostWhole), {wholesIn(value["lo"], 0), wholesIn(value["hi"], 1)},
+            value["component"].whole(0, kMostWhole)};
 }
 
 std::vector<std::string> filesIn(const json& message) {
@@ -148,8 +181,29 @@ void throwErrorIn(const json& message) {
     throw FileError(what, where, toDo);
 }
 
-std::uint64_t bytesOf(const FileLayout& layout, const std::string& path) {
-    return valuesIn(layout, path) * bytesPerValue(layout.type);
+Int3 dimsOf(const ReaderLayout& answer, int level) {
+    if (level == 0) return contentsOf(answer.layout).dims;
+    const auto n = static_cast<std::size_t>(level - 1);
+    if (n >= answer.levels.size()) throw FileError("there is no such level of detail", "", "");
+    return answer.levels[n].dims;
+}
+
+bool componentsAreApart(const FileLayout& layout) { return layout.axes.back().components; }
+
+std::uint64_t bytesPerVoxel(const FileLayout& layout) {
+    const bool areBeside = !componentsAreApart(layout);
+    return bytesPerValue(layout.type) *
+           (areBeside ? static_cast<std::uint64_t>(contentsOf(layout).components) : std::uint64_t{1});
+}
+
+std::uint64_t bytesOf(const ReaderBox& box, const ReaderLayout& answer, const std::string& path) {
+    const Int3 dims = dimsOf(answer, box.level), &lo = box.region.lo, &hi = box.region.hi;
+    for (int a = 0; a < 3; ++a)
+        if (lo[a] < 0 || lo[a] >= hi[a] || hi[a] > dims[a])
+            throw FileError("the voxels that are asked for are not there", path, "copy the file again");
+    const std::array<std::int64_t, 3> sizes{hi.x - lo.x, hi.y - lo.y, hi.z - lo.z};
+    const std::uint64_t bytes = bytesPerVoxel(answer.layout);
+    return valueCount(path, sizes, bytes) * bytes;
 }
 
 } // namespace pellucid

@@ -24,28 +24,51 @@ struct ReaderRequest {
     std::string path;        ///< a file or a folder
     std::string array;       ///< the series that is wanted; empty: the one with the most slices
     int step = 0;            ///< the time step that is read
-    bool middleOnly = false; ///< of its slices only the one in the middle
 };
 
-/// What it says of the voxels that it is about to write: x fastest, without gaps, in this machine's byte order.
+/// A coarser copy of the voxels that the files have besides.
+struct ReaderLevel {
+    Int3 dims{1, 1, 1};
+    Int3 factors{1, 1, 1}; ///< voxels of the data to one of these, along each axis
+    Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
+};
+
+/// What it says of the voxels, which it writes box by box: x fastest, without gaps, in this machine's byte order.
 struct ReaderLayout {
     FileLayout layout;             ///< but for where the values are
     std::optional<double> missing; ///< the value that stands for none, as the file says
+    std::vector<ReaderLevel> levels; ///< from fine to coarse
+    int layersAtOnce = 1;            ///< layers across z that are stored together
+};
+
+/// What it is to write next.
+struct ReaderBox {
+    int level = 0;      ///< 0: the voxels themselves; n: those of levels[n − 1]
+    VoxelRegion region; ///< in voxels of the level
+    int component = 0;  ///< where the axis of components is the last one: the one that is written
 };
 
 nlohmann::json jsonOf(const ReaderRequest& request);
 nlohmann::json jsonOf(const FileContents& contents);
 nlohmann::json jsonOf(const ReaderLayout& answer);
+nlohmann::json jsonOf(const ReaderBox& box);
 nlohmann::json jsonOf(const Error& error);
 
 /// Throw Error where `message` is not what was to come: the other end may be damaged, or in the hands of a file.
 ReaderRequest requestIn(const nlohmann::json& message);
 FileContents contentsIn(const nlohmann::json& message);
 ReaderLayout layoutIn(const nlohmann::json& message);
+ReaderBox boxIn(const nlohmann::json& message);
 std::vector<std::string> filesIn(const nlohmann::json& message);
 [[noreturn]] void throwErrorIn(const nlohmann::json& message);
 
-/// Of the voxels that a layout announces. Throws FileError, with `path`, where they are too many to count.
-std::uint64_t bytesOf(const FileLayout& layout, const std::string& path);
+/// Voxels along each axis of a level, 0 being the voxels themselves. Throws FileError where there is no such level.
+Int3 dimsOf(const ReaderLayout& answer, int level);
+/// Whether each component has its own box, one behind the other: their axis is the last one.
+bool componentsAreApart(const FileLayout& layout);
+/// Of one voxel in a box.
+std::uint64_t bytesPerVoxel(const FileLayout& layout);
+/// Of a box. Throws FileError, with `path`, where it does not lie in its level, or has too many to count.
+std::uint64_t bytesOf(const ReaderBox& box, const ReaderLayout& answer, const std::string& path);
 
 } // namespace pellucid

@@ -16,8 +16,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "base/mapped_file.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
+#include "volume/excerpt.h"
 
 extern char** environ;
 
@@ -31,6 +36,8 @@ using nlohmann::json;
 /// Without a word for so long it is ended: it tells of every file that it has read.
 constexpr double kMostSilentSeconds = 120;
 constexpr std::size_t kMostLine = 64u << 20;
+/// Voxels that files with coarser copies are opened with where nobody has said how many.
+constexpr std::size_t kFirstLook = std::size_t{1} << 27;
 /// What the voxels are called in the reader: the number of its file.
 constexpr int kVoxelsThere = 3;
 
@@ -111,32 +118,40 @@ public:
         }
     }
 
-    /// The next message that is no progress. Throws what the reader says is wrong, and Cancelled.
-    json hear() {
+    /// The next message that is no progress, which `report` is told of. Throws what the reader says is wrong, and
+    /// Cancelled.
+    json hear(const JobControl& report) {
         for (;;) {
             const std::string line = nextLine();
             json message = json::parse(line, nullptr, false);
             if (!message.is_object()) failSuddenly("it does not say anything that can be understood");
             if (message.contains("error")) throwErrorIn(message);
             if (!message.contains("progress")) return message;
-            if (message["progress"].is_number()) m_job.report(std::clamp(message["progress"].get<double>(), 0.0, 1.0));
+            if (message["progress"].is_number()) report.report(std::clamp(message["progress"].get<double>(), 0.0, 1.0));
         }
     }
 
-    /// Room for the voxels, which the reader is told of.
+    /// Room for the voxels of each box, which stays as it is.
     void makeRoom(std::uint64_t bytes) {
         if (::ftruncate(m_voxels.number(), static_cast<off_t>(bytes)) != 0)
             throw FileError("there is no memory for the voxels (" + std::generic_category().message(errno) + ")",
                             m_path, "close other programs", Remedy::AllowMoreMemory);
-        say("{}");
+        ::fcntl(m_voxels.number(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW);
     }
 
-    /// The voxels, as a file that is there as long as this is. Nobody can change them any more.
-    std::string voxels() {
-        end();
-        ::fcntl(m_voxels.number(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE);
-        return "/proc/self/fd/" + std::to_string(m_voxels.number());
+    /// Has a box written, from the beginning of the room.
+    void read(const ReaderBox& box, const JobControl& report) {
+        say(jsonOf(box).dump());
+        hear(report);
     }
+
+    /// The voxels of one box, as a file that is there as long as this is. Nobody can change them any more.
+    std::string keptVoxels() {
+        end();
+        ::fcntl(m_voxels.number(), F_ADD_SEALS, F_SEAL_WRITE);
+        return voxels();
+    }
+    std::string voxels() const { return "/proc/self/fd/" + std::to_string(m_voxels.number()); }
 
 private:
     void start(int in, int out) {
@@ -247,30 +262,179 @@ void setReaderProgram(const fs::path& program) { chosenProgram() = program; }
 FileContents describeInProcess(const ReaderRequest& request, const JobControl& job) {
     Reader reader(request, job);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::Describe)).dump());
-    return contentsIn(reader.hear());
+    return contentsIn(reader.hear(job));
 }
 
 std::vector<std::string> listInProcess(const ReaderRequest& request, const JobControl& job) {
     Reader reader(request, job);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::List)).dump());
-    return filesIn(reader.hear());
+    return filesIn(reader.hear(job));
 }
 
-Volume readInProcess(const VolumeSource& source, const ReaderRequest& request, const JobControl& job) {
-    const JobControl reading = job.part(0, 2), taking = job.part(1, 2);
-    Reader reader(request, reading);
+namespace {
+
+/// The bytes of a box, x fastest, components as the layout has them: a reader writes them slab by slab, as they are
+/// asked for.
+class BoxBytes final : public ByteSource {
+public:
+    BoxBytes(Reader& reader, const ReaderLayout& answer, int level, const VoxelRegion& region, const std::string& path,
+             const JobControl& job)
+        : m_reader(reader), m_level(level), m_region(region), m_job{job.stop, {}} {
+        const FileLayout& layout = answer.layout;
+        const Int3 size = region.hi - region.lo;
+        m_layerBytes = layerSize(size) * bytesPerVoxel(layout);
+        m_componentBytes = m_layerBytes * static_cast<std::uint64_t>(size.z);
+        m_components =
+            componentsAreApart(layout) ? static_cast<std::uint64_t>(contentsOf(layout).components) : std::uint64_t{1};
+        const auto affordable = static_cast<int>(std::clamp<std::uint64_t>(kMostSlab / m_layerBytes, 1, 1u << 30));
+        m_layers = affordable >= answer.layersAtOnce ? affordable - affordable % answer.layersAtOnce : affordable;
+        const std::uint64_t room = m_layerBytes * static_cast<std::uint64_t>(std::min(m_layers, size.z));
+        requireMemory("reading it", path, room);
+        reader.makeRoom(room);
+        m_room = MappedFile::map(reader.voxels(), 0, room);
+        if (!m_room)
+            throw FileError("there is no memory for the voxels", path, "close other programs", Remedy::AllowMoreMemory);
+    }
+
+    std::size_t read(char* to, std::size_t count) override {
+        std::size_t done = 0;
+        while (done < count && m_at < m_components * m_componentBytes) {
+            if (m_at < m_slabBegin || m_at >= m_slabEnd) readSlab();
+            const std::size_t piece = std::min<std::size_t>(count - done, static_cast<std::size_t>(m_slabEnd - m_at));
+            std::memcpy(to + done, m_room->data() + (m_at - m_slabBegin), piece);
+            done += piece;
+            m_at += piece;
+        }
+        return done;
+    }
+    bool skip(std::uint64_t count) override {
+        const std::uint64_t left = m_components * m_componentBytes - m_at;
+        m_at += std::min(count, left);
+        return count <= left;
+    }
+
+private:
+    static constexpr std::uint64_t kMostSlab = 256u << 20; ///< bytes, but for one layer that is larger
+
+    /// The slab with the byte m_at; slabs begin where layers that are stored together do.
+    void readSlab() {
+        const auto component = m_at / m_componentBytes;
+        const int z = m_region.lo.z + static_cast<int>(m_at % m_componentBytes / m_layerBytes);
+        ReaderBox box{m_level, m_region, static_cast<int>(component)};
+        box.region.lo.z = z;
+        box.region.hi.z = std::min((z / m_layers + 1) * m_layers, m_region.hi.z);
+        m_reader.read(box, m_job);
+        m_slabBegin = component * m_componentBytes + static_cast<std::uint64_t>(z - m_region.lo.z) * m_layerBytes;
+        m_slabEnd = m_slabBegin + static_cast<std::uint64_t>(box.region.hi.z - z) * m_layerBytes;
+    }
+
+    Reader& m_reader;
+    const int m_level;
+    const VoxelRegion m_region;
+    const JobControl m_job;
+    std::uint64_t m_layerBytes = 0, m_componentBytes = 0, m_components = 1;
+    int m_layers = 1; ///< of a slab
+    std::shared_ptr<const MappedFile> m_room;
+    std::uint64_t m_at = 0, m_slabBegin = 0, m_slabEnd = 0; ///< the next byte; those in the room
+};
+
+/// Which voxels of which level make a volume.
+struct LevelPlan {
+    int level = 0;      ///< as ReaderBox has it
+    VoxelRegion region; ///< in voxels of the level
+    ExcerptPlan plan;   ///< of these
+};
+
+/// The coarsest level that is not coarser than what is wanted, and of whose voxels it can be made.
+LevelPlan levelFor(const ExcerptPlan& wanted, const ReaderLayout& answer) {
+    LevelPlan best{0, wanted.region, wanted};
+    best.plan.region = {Int3(0), wanted.region.hi - wanted.region.lo};
+    for (std::size_t n = 0; n < answer.levels.size(); ++n) {
+        const ReaderLevel& level = answer.levels[n];
+        if (wanted.factors % level.factors != Int3(0) || wanted.region.lo % level.factors != Int3(0)) continue;
+        LevelPlan next{static_cast<int>(n) + 1, {}, wanted};
+        next.region.lo = wanted.region.lo / level.factors;
+        next.region.hi = glm::min((wanted.region.hi - 1) / level.factors + 1, level.dims); // its edge may be left out
+        const Int3 size = next.region.hi - next.region.lo;
+        if (glm::any(glm::lessThan(size, Int3(1)))) continue;
+        next.plan.region = {Int3(0), size};
+        next.plan.factors = wanted.factors / level.factors;
+        next.plan.dims = (size - 1) / next.plan.factors + 1;
+        best = std::move(next);
+    }
+    return best;
+}
+
+/// planExcerpt(), but where files have coarser copies, one of these is enough for a first look.
+ExcerptPlan planFor(const VolumeSource& source, const ReaderLayout& answer) {
+    const FileContents contents = contentsOf(answer.layout);
+    ExcerptPlan plan = planExcerpt(source, contents.dims, contents.type, false);
+    if (source.downsample != 0) return plan;
+    for (const ReaderLevel& level : answer.levels) {
+        if (voxelCount(plan.dims) <= kFirstLook) break;
+        const int factor = std::max({level.factors.x, level.factors.y, level.factors.z});
+        if (factor > plan.excerpt.factor) plan = planOf(plan.region, contents.dims, factor);
+    }
+    return plan;
+}
+
+/// Says what is read of a level, and where it lies.
+void placeLevel(FileLayout& layout, const ReaderLayout& answer, const LevelPlan& taken) {
+    std::size_t axis = layout.axes.front().components ? 1 : 0;
+    const Int3 size = taken.region.hi - taken.region.lo;
+    for (int a = 0; a < 3; ++a) layout.axes[axis++].size = size[a];
+    if (taken.level > 0) {
+        const ReaderLevel& level = answer.levels[static_cast<std::size_t>(taken.level - 1)];
+        layout.spacing = level.spacing;
+        layout.origin = level.origin;
+        layout.notices.push_back("the voxels are those of a coarser copy in the file; a region, or all with a "
+                                 "downsampling factor of 1, can be opened at full resolution");
+    }
+    layout.origin += layout.directions * (layout.spacing * Vec3(taken.region.lo));
+    layout.plan = taken.plan;
+}
+
+Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool middleOnly, const JobControl& job) {
+    Reader reader(request, job);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::Read)).dump());
-    ReaderLayout answer = layoutIn(reader.hear());
-    const std::uint64_t bytes = bytesOf(answer.layout, source.path);
-    requireMemory("opening it", source.path, bytes);
-    reader.makeRoom(bytes);
-    reader.hear();
-    answer.layout.dataPath = reader.voxels();
+    const ReaderLayout answer = layoutIn(reader.hear(job));
+    FileLayout layout = answer.layout;
+    layout.dataPath = source.path;
     VolumeSource taken = source;
-    taken.step = 0; // the one that was read
-    if (!taken.array.empty()) taken.array = answer.layout.array;
+    taken.step = 0; // the one that is read
+    if (!taken.array.empty()) taken.array = layout.array;
     if (!taken.missing) taken.missing = answer.missing;
-    return readSamples(taken, answer.layout, taking);
+    const FileContents contents = contentsOf(layout);
+    const Int3 dims = contents.dims;
+    if (middleOnly) taken.region = VoxelRegion{{0, 0, dims.z / 2}, {dims.x, dims.y, dims.z / 2 + 1}};
+    const ExcerptPlan plan = planFor(taken, answer);
+    const ReaderBox all{0, {Int3(0), dims}, 0};
+    const std::uint64_t bytes = bytesOf(all, answer, source.path);
+    // Large volumes that are kept as they are read stay where they are.
+    const bool isKept = plan.isWhole() && bytes >= kMapBytes && contents.components == 1 &&
+                        bytes == voxelCount(dims) * bytesPerSample(contents.type);
+    if (isKept) {
+        reader.makeRoom(bytes);
+        reader.read(all, job.part(0, 2));
+        layout.dataPath = reader.keptVoxels();
+        return readSamples(taken, layout, job.part(1, 2));
+    }
+    const LevelPlan level = levelFor(plan, answer);
+    placeLevel(layout, answer, level);
+    layout.open = [&](const JobControl& reading) -> std::unique_ptr<ByteSource> {
+        return std::make_unique<BoxBytes>(reader, answer, level.level, level.region, source.path, reading);
+    };
+    return readSamples(taken, layout, job);
+}
+
+} // namespace
+
+Volume readInProcess(const VolumeSource& source, const ReaderRequest& request, const JobControl& job) {
+    return readPart(source, request, false, job);
+}
+
+Volume readMiddleInProcess(const VolumeSource& source, const ReaderRequest& request, const JobControl& job) {
+    return readPart(source, request, true, job);
 }
 
 } // namespace pellucid

@@ -18,6 +18,9 @@ std::vector<std::string> listInProcess(const ReaderRequest& request, const JobCo
 /// The volume that the reader has read, as readSamples() makes it of `source`.
 Volume readInProcess(const VolumeSource& source, const ReaderRequest& request, const JobControl& job);
 
+/// The layer across the middle of its z axis.
+Volume readMiddleInProcess(const VolumeSource& source, const ReaderRequest& request, const JobControl& job);
+
 /// The program that is started; empty: pellucid-reader beside this program, or where it is installed. For tests.
 void setReaderProgram(const std::filesystem::path& program);
 
