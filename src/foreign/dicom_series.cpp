@@ -312,13 +312,14 @@ void DicomSeries::read(int step, const ReaderBox& box, std::span<std::byte> voxe
     withType(keptType(), [&](auto zero) {
         using T = decltype(zero);
         const VoxelRegion& region = box.region;
-        std::vector<T> slice(samples);
+        std::vector<T> slice;
         for (int z = region.lo.z; z < region.hi.z; ++z) {
             const DicomLayer& layer = layers.at(static_cast<std::size_t>(z));
             std::erase_if(values,
                           [&](const auto& entry) { return entry.first != layer.before && entry.first != layer.after; });
             const std::vector<double>& from = picture(layer.before);
             const std::vector<double>& other = picture(layer.after);
+            slice.resize(samples);
             for (std::size_t i = 0; i < samples; ++i) {
                 double value = from[i];
                 if (layer.toAfter > 0) value += layer.toAfter * (other[i] - from[i]);

@@ -1,0 +1,345 @@
+#include "foreign/zarr/ome_zarr.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "volume/file_names.h"
+#include "volume/formats/file_check.h"
+
+namespace pellucid {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kDeepest = 4;             ///< groups in groups that are looked into
+constexpr std::size_t kMostImages = 1000;
+constexpr std::size_t kMostLevels = 32;
+
+std::string joinedPath(const std::string& folder, const std::string& name) {
+    return folder.empty() ? name : folder + "/" + name;
+}
+
+/// Of a length in metres, or of a time in seconds; empty for what is neither.
+std::optional<double> sizeOfUnit(const std::string& unit) {
+    static const std::map<std::string, double> kPrefixes{
+        {"", 1},         {"centi", 1e-2}, {"milli", 1e-3}, {"micro", 1e-6}, {"nano", 1e-9},
+        {"pico", 1e-12}, {"deci", 1e-1},  {"kilo", 1e3},   {"femto", 1e-15}};
+    if (unit == "angstrom") return 1e-10;
+    if (unit == "minute") return 60;
+    if (unit == "hour") return 3600;
+    if (unit == "day") return 86400;
+    for (const char* base : {"meter", "second"})
+        if (unit.ends_with(base))
+            if (const auto prefix = kPrefixes.find(unit.substr(0, unit.size() - std::string(base).size()));
+                prefix != kPrefixes.end())
+                return prefix->second;
+    return {};
+}
+
+/// What an image says of its axes.
+struct Axes {
+    std::string letters;            ///< a letter of "tczyx" for each
+    std::vector<std::string> units; ///< "micrometer"; empty: not given
+};
+
+Axes axesOf(const JsonValue& multiscale, std::size_t count) {
+    Axes axes;
+    if (!multiscale.has("axes")) { // NGFF 0.1 and 0.2 have five, in this order
+        axes.letters = std::string("tczyx").substr(5 - std::min<std::size_t>(count, 5));
+        axes.units.resize(axes.letters.size());
+        return axes;
+    }
+    for (const JsonValue& axis : multiscale["axes"].items()) {
+        const bool isName = axis.json().is_string(); // NGFF 0.3
+        const std::string name = lowerCase(isName ? axis.text() : axis["name"].text());
+        const std::string type = !isName && axis.has("type") ? axis["type"].text() : "";
+        char letter = name.size() == 1 ? name.front() : '?';
+        if (type == "time") letter = 't';
+        if (type == "channel") letter = 'c';
+        if (std::string("tczyx").find(letter) == std::string::npos || axes.letters.find(letter) != std::string::npos)
+            axis.fail("the axis " + inQuotes(name) + " is none of t, c, z, y, x, or stands there twice",
+                      "name the axes t, c, z, y, x");
+        axes.letters += letter;
+        axes.units.push_back(!isName && axis.has("unit") && axis["unit"].json().is_string() ? axis["unit"].text() : "");
+    }
+    return axes;
+}
+
+/// Scale and translation of each axis by a list of transformations: steps[a]·index + offsets[a].
+struct Placement {
+    std::vector<double> steps, offsets;
+    explicit Placement(std::size_t axes) : steps(axes, 1.0), offsets(axes, 0.0) {}
+    void apply(const JsonValue& transformations) {
+        for (const JsonValue& one : transformations.items()) {
+            const std::string type = one["type"].text();
+            if (type == "identity") continue;
+            if (type != "scale" && type != "translation")
+                one.fail("the transformation " + inQuotes(type) + " is not supported", "use scale and translation");
+            const std::vector<double> numbers = one[type.c_str()].numbers();
+            if (numbers.size() != steps.size()) one.fail("there has to be a number for each axis");
+            for (std::size_t a = 0; a < numbers.size(); ++a) {
+                if (type == "scale") {
+                    steps[a] *= numbers[a];
+                    offsets[a] *= numbers[a];
+                } else {
+                    offsets[a] += numbers[a];
+                }
+            }
+        }
+    }
+};
+
+constexpr std::string_view kSpace = "xyz";
+
+} // namespace
+
+bool isZarr(const std::string& path) {
+    std::error_code ec;
+    for (const char* name : {"zarr.json", ".zattrs", ".zgroup", ".zarray"})
+        if (fs::is_regular_file(path + "/" + name, ec)) return true;
+    return false;
+}
+
+std::int64_t OmeZarr::Image::size(char axis, std::size_t level) const {
+    const std::size_t at = axes.find(axis);
+    return at == std::string::npos ? 1 : levels[level].shape()[at];
+}
+
+std::uint64_t OmeZarr::Image::voxels() const {
+    return static_cast<std::uint64_t>(size('x')) * static_cast<std::uint64_t>(size('y')) *
+           static_cast<std::uint64_t>(size('z'));
+}
+
+OmeZarr::OmeZarr(const std::string& path, const std::string& wanted, const BeforeFile& before) : m_path(path) {
+    find(path, "", 0, before);
+    if (m_images.empty() && !m_faults.empty()) throw m_faults.front();
+    if (m_images.empty())
+        throw FileError("there is no image and no array of three axes in it", path, "open another folder");
+    const auto found = std::ranges::find(m_images, wanted, &Image::name);
+    if (!wanted.empty() && found == m_images.end()) {
+        const auto nameOf = [](const Image& image) { return inQuotes(image.name); };
+        throw UsageError("there is no image " + inQuotes(wanted), path, "it has " + joined(m_images, ", ", nameOf));
+    }
+    const auto isSmaller = [](const Image& a, const Image& b) { return a.voxels() < b.voxels(); };
+    const auto largest = std::ranges::max_element(m_images, isSmaller); // the first of several
+    m_shown = static_cast<std::size_t>((wanted.empty() ? largest : found) - m_images.begin());
+    if (m_images.size() > 1 && wanted.empty())
+        m_images[m_shown].notices.push_back("image " + inQuotes(m_images[m_shown].name) + " of " +
+                                            std::to_string(m_images.size()) + " is shown");
+}
+
+void OmeZarr::find(const std::string& folder, const std::string& name, int depth, const BeforeFile& before) {
+    before(0);
+    std::optional<ZarrNode> node;
+    try {
+        node = zarrNodeAt(folder);
+        if (!node) return;
+        if (node->isArray()) return addArray(folder, name, *node);
+        const json& attributes = node->attributes;
+        const json& ome = attributes.contains("ome") && attributes["ome"].is_object() ? attributes["ome"] : attributes;
+        const JsonValue metadata(ome, node->file);
+        if (metadata.has("multiscales")) {
+            for (const JsonValue& multiscale : metadata["multiscales"].items()) {
+                addImage(folder, name, multiscale, before);
+                break; // further ones are the same image in other forms
+            }
+            return;
+        }
+    } catch (const FileError& fault) {
+        m_faults.push_back(fault);
+        return;
+    }
+    if (depth == kDeepest) return;
+    std::vector<std::string> below;
+    std::error_code ec;
+    for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
+        if (it->is_directory(ec)) below.push_back(it->path().filename().string());
+    std::ranges::sort(below, countsBefore);
+    for (const std::string& next : below)
+        if (m_images.size() < kMostImages) find(folder + "/" + next, joinedPath(name, next), depth + 1, before);
+}
+
+void OmeZarr::addImage(const std::string& folder, const std::string& name, const JsonValue& multiscale,
+                       const BeforeFile& before) {
+    Image image;
+    image.name = name;
+    std::vector<Placement> placements;
+    Axes axes;
+    for (const JsonValue& dataset : multiscale["datasets"].items()) {
+        if (image.levels.size() == kMostLevels) break;
+        before(0);
+        const std::string path = dataset["path"].text();
+        if (path.starts_with('/') || path.find("..") != std::string::npos)
+            dataset.fail("the path of an array leads out of its image", "correct the path");
+        const std::string at = folder + "/" + path;
+        const std::optional<ZarrNode> node = zarrNodeAt(at);
+        if (!node || !node->isArray())
+            throw FileError("this array is missing, a level of its image", at, "copy the image with all of its levels");
+        image.levels.emplace_back(at, *node);
+        const std::size_t count = image.levels.back().shape().size();
+        if (image.levels.size() == 1) axes = axesOf(multiscale, count);
+        if (count != axes.letters.size())
+            dataset.fail("the array has " + std::to_string(count) + " axes, its image " +
+                         std::to_string(axes.letters.size()));
+        Placement& placed = placements.emplace_back(count);
+        if (dataset.has("coordinateTransformations")) placed.apply(dataset["coordinateTransformations"]);
+        if (multiscale.has("coordinateTransformations")) placed.apply(multiscale["coordinateTransformations"]);
+    }
+    if (image.levels.empty()) multiscale.fail("the image has no arrays");
+    image.axes = axes.letters;
+    if (image.axes.find('x') == std::string::npos || image.axes.find('y') == std::string::npos)
+        multiscale.fail("the image has no axes x and y");
+    std::string unit;
+    for (int a = 0; a < 3; ++a) {
+        const std::size_t at = image.axes.find(kSpace[static_cast<std::size_t>(a)]);
+        if (at == std::string::npos) continue;
+        if (unit.empty()) unit = axes.units[at];
+        const auto own = sizeOfUnit(axes.units[at]), first = sizeOfUnit(unit);
+        const double scale = own && first ? *own / *first : 1; // in the unit of x
+        image.spacing[a] = placements.front().steps[at] * scale;
+        image.origin[a] = placements.front().offsets[at] * scale;
+    }
+    if (const std::size_t at = image.axes.find('t'); at != std::string::npos) {
+        image.stepWidth = placements.front().steps[at];
+        if (const auto seconds = sizeOfUnit(axes.units[at])) {
+            image.stepWidth *= *seconds;
+            image.timeUnit = "s";
+        }
+    }
+    m_images.push_back(std::move(image));
+}
+
+void OmeZarr::addArray(const std::string& folder, const std::string& name, const ZarrNode& node) {
+    if (node.metadata.contains("shape") && node.metadata["shape"].is_array() && node.metadata["shape"].size() < 3)
+        return; // coordinates, and the like
+    ZarrArray array(folder, node);
+    Image image;
+    image.name = name;
+    const std::size_t axes = array.shape().size();
+    for (std::size_t a = 0; a < axes; ++a) {
+        const std::string axis = a < array.names().size() ? lowerCase(array.names()[a]) : "";
+        image.axes += axis == "t" || axis == "time" ? 't' : axis == "c" || axis == "channel" ? 'c' : '?';
+    }
+    // The last three that are neither times nor channels are those of space; one more is of times.
+    std::size_t left = 0;
+    for (std::size_t a = axes; a-- > 0;)
+        if (image.axes[a] == '?') image.axes[a] = left < 3 ? kSpace[left++] : 't';
+    const auto count = [&](char letter) { return std::ranges::count(image.axes, letter); };
+    if (left < 2 || count('t') > 1 || count('c') > 1)
+        throw FileError("an array of " + std::to_string(axes) + " axes is no volume", array.file(), "open another one");
+    image.levels.push_back(std::move(array));
+    m_images.push_back(std::move(image));
+}
+
+ReaderLayout OmeZarr::layout(int step) const {
+    const Image& image = m_images[m_shown];
+    requireIndex("time step", step, static_cast<std::uint64_t>(image.size('t')), m_path);
+    ReaderLayout answer;
+    FileLayout& layout = answer.layout;
+    layout.type = image.levels.front().type();
+    for (const char axis : kSpace) layout.axes.push_back({image.size(axis)});
+    if (image.size('c') > 1) layout.axes.push_back({image.size('c'), true});
+    layout.spacing = image.spacing;
+    layout.origin = image.origin;
+    for (int a = 0; a < 3; ++a) // as axes that run the other way
+        if (layout.spacing[a] < 0) {
+            layout.spacing[a] = -layout.spacing[a];
+            layout.directions[a] = -layout.directions[a];
+        }
+    layout.array = image.name;
+    layout.notices = image.notices;
+    const std::size_t z = image.axes.find('z');
+    const auto layersOf = [&](const ZarrArray& array) { return z == std::string::npos ? 1 : array.chunk()[z]; };
+    const Int3 full(static_cast<int>(image.size('x')), static_cast<int>(image.size('y')),
+                    static_cast<int>(image.size('z')));
+    for (std::size_t n = 1; n < image.levels.size(); ++n) {
+        ReaderLevel level;
+        for (int a = 0; a < 3; ++a)
+            level.dims[a] = static_cast<int>(image.size(kSpace[static_cast<std::size_t>(a)], n));
+        level.factors = glm::max(Int3(1), Int3(glm::round(Vec3(full) / Vec3(level.dims))));
+        // Writers round sizes up or down.
+        const Int3 least = full / level.factors, most = (full - 1) / level.factors + 1;
+        const bool isCoarser = level.factors != Int3(1) && glm::all(glm::greaterThanEqual(level.dims, least)) &&
+                               glm::all(glm::lessThanEqual(level.dims, most)) &&
+                               image.levels[n].type() == image.levels.front().type() &&
+                               image.size('c', n) == image.size('c') && image.size('t', n) == image.size('t');
+        if (!isCoarser) continue;
+        level.spacing = layout.spacing * Vec3(level.factors);
+        level.origin = layout.origin + layout.directions * (0.5 * Vec3(level.factors - 1) * layout.spacing);
+        answer.levels.push_back(level);
+    }
+    answer.layersAtOnce = static_cast<int>(std::min(layersOf(image.levels.front()), image.size('z')));
+    return answer;
+}
+
+FileContents OmeZarr::contents() const {
+    const Image& shown = m_images[m_shown];
+    FileContents contents = contentsOf(layout(0).layout);
+    contents.steps = static_cast<int>(shown.size('t'));
+    if (shown.stepWidth > 0 && contents.steps > 1 && contents.steps < 1'000'000) {
+        contents.timeUnit = shown.timeUnit;
+        for (int step = 0; step < contents.steps; ++step) contents.times.push_back(step * shown.stepWidth);
+    }
+    if (m_images.size() == 1) return contents;
+    for (const Image& image : m_images) {
+        contents.arrays.push_back(image.name);
+        contents.details.push_back(std::to_string(image.size('x')) + " x " + std::to_string(image.size('y')) + " x " +
+                                   std::to_string(image.size('z')));
+    }
+    return contents;
+}
+
+std::vector<std::string> OmeZarr::files() const {
+    std::vector<std::string> files;
+    for (const ZarrArray& array : m_images[m_shown].levels) files.push_back(array.file());
+    return files;
+}
+
+std::uint64_t OmeZarr::largestImageBytes() const {
+    std::uint64_t most = 0;
+    for (const ZarrArray& array : m_images[m_shown].levels) most = std::max(most, array.chunkBytes());
+    return most;
+}
+
+void OmeZarr::read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
+                   const JobControl& job) const {
+    const Image& image = m_images[m_shown];
+    // The arrays of the levels that layout() names, which may leave some out.
+    std::size_t array = 0;
+    if (box.level > 0) {
+        const Int3 wanted = dimsOf(layout(step), box.level);
+        while (array + 1 < image.levels.size() &&
+               Int3(static_cast<int>(image.size('x', array)), static_cast<int>(image.size('y', array)),
+                    static_cast<int>(image.size('z', array))) != wanted)
+            ++array;
+    }
+    const std::size_t axes = image.axes.size();
+    ZarrBox part{std::vector<std::int64_t>(axes), std::vector<std::int64_t>(axes)};
+    std::vector<std::int64_t> strides(axes, 0);
+    const Int3 size = box.region.hi - box.region.lo;
+    for (std::size_t a = 0; a < axes; ++a) {
+        const std::size_t space = kSpace.find(image.axes[a]);
+        if (space == std::string_view::npos) {
+            part.lo[a] = image.axes[a] == 't' ? step : box.component;
+            part.hi[a] = part.lo[a] + 1;
+            continue;
+        }
+        const int s = static_cast<int>(space);
+        part.lo[a] = box.region.lo[s];
+        part.hi[a] = box.region.hi[s];
+        strides[a] = s == 0 ? 1 : s == 1 ? size.x : std::int64_t{size.x} * size.y;
+    }
+    image.levels[array].read(part, strides, voxels, before, job);
+}
+
+} // namespace pellucid

@@ -1,0 +1,53 @@
+// Volumes in folders of Zarr: OME-Zarr (NGFF 0.1 to 0.5) with its levels of detail, or arrays by themselves. Runs in
+// pellucid-array-reader only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "foreign/foreign_volume.h"
+#include "foreign/zarr/zarr_array.h"
+
+namespace pellucid {
+
+/// Whether a folder holds Zarr.
+bool isZarr(const std::string& path);
+
+class OmeZarr final : public ForeignVolume {
+public:
+    /// `wanted`: an image or an array by its path in the folder; empty: the largest image, or the largest array where
+    /// there is none. Throws FileError, UsageError for an image that is not there.
+    OmeZarr(const std::string& path, const std::string& wanted, const BeforeFile& before);
+
+    FileContents contents() const override;
+    std::vector<std::string> files() const override;
+    ReaderLayout layout(int step) const override;
+    std::uint64_t largestImageBytes() const override;
+    void read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
+              const JobControl& job) const override;
+
+private:
+    /// What can be opened: arrays of one image, from fine to coarse.
+    struct Image {
+        std::string name;                ///< path in the folder; empty: the folder itself
+        std::vector<ZarrArray> levels;
+        std::string axes;                ///< a letter of "tczyx" for each
+        Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
+        double stepWidth = 0;            ///< in timeUnit; 0: not known
+        std::string timeUnit;
+        std::vector<std::string> notices;
+        std::int64_t size(char axis, std::size_t level = 0) const;
+        std::uint64_t voxels() const;
+    };
+    void find(const std::string& folder, const std::string& name, int depth, const BeforeFile& before);
+    void addImage(const std::string& folder, const std::string& name, const JsonValue& multiscale,
+                  const BeforeFile& before);
+    void addArray(const std::string& folder, const std::string& name, const ZarrNode& node);
+
+    std::string m_path;
+    std::vector<Image> m_images;
+    std::vector<FileError> m_faults;
+    std::size_t m_shown = 0;
+};
+
+} // namespace pellucid
