@@ -39,15 +39,16 @@ Geometry ExcerptPlan::geometryOf(const Geometry& full) const {
 
 std::vector<std::string> ExcerptPlan::notices() const {
     std::vector<std::string> all;
+    const Int3 size = excerpt.region.hi - excerpt.region.lo;
     if (excerpt.forMemory)
         all.push_back("downsampled by " + std::to_string(excerpt.factor) + " to " + dimsText(dims) + " voxels: all " +
-                      dimsText(region.hi - region.lo) + " need " + describeBytes(neededAtFull) + " of memory, " +
+                      dimsText(size) + " need " + describeBytes(neededAtFull) + " of memory, " +
                       describeBytes(available) + " are free; a region of them can be opened at full resolution");
     else if (excerpt.factor > 1)
         all.push_back("downsampled by " + std::to_string(excerpt.factor) + " to " + dimsText(dims) + " of " +
-                      dimsText(region.hi - region.lo) + " voxels");
-    if (region.lo != Int3(0) || region.hi != excerpt.fullDims)
-        all.push_back("a region of " + dimsText(region.hi - region.lo) + " of " + dimsText(excerpt.fullDims) +
+                      dimsText(size) + " voxels");
+    if (size != excerpt.fullDims)
+        all.push_back("a region of " + dimsText(size) + " of " + dimsText(excerpt.fullDims) +
                       " voxels is shown");
     return all;
 }

@@ -31,8 +31,8 @@ const VolumeFormat* formatOfContent(const std::string& content) {
 
 /// Of a folder whose files are together one volume; null for others.
 const VolumeFormat* formatOfFolder(const std::string& path) {
-    static const VolumeFormat kDicom = dicomFormat(), kImages = imageFormat();
-    return holdsDicom(path) ? &kDicom : holdsImages(path) ? &kImages : nullptr;
+    static const VolumeFormat kZarr = zarrFormat(), kDicom = dicomFormat(), kImages = imageFormat();
+    return holdsZarr(path) ? &kZarr : holdsDicom(path) ? &kDicom : holdsImages(path) ? &kImages : nullptr;
 }
 
 /// Null where neither suffix nor content tells one.

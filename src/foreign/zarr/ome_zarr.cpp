@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kDeepest = 4;             ///< groups in groups that are looked into
+constexpr int kDeepest = 4; ///< groups in groups that are looked into
 constexpr std::size_t kMostImages = 1000;
 constexpr std::size_t kMostLevels = 32;
 
@@ -31,9 +31,9 @@ std::string joinedPath(const std::string& folder, const std::string& name) {
 
 /// Of a length in metres, or of a time in seconds; empty for what is neither.
 std::optional<double> sizeOfUnit(const std::string& unit) {
-    static const std::map<std::string, double> kPrefixes{
-        {"", 1},         {"centi", 1e-2}, {"milli", 1e-3}, {"micro", 1e-6}, {"nano", 1e-9},
-        {"pico", 1e-12}, {"deci", 1e-1},  {"kilo", 1e3},   {"femto", 1e-15}};
+    static const std::map<std::string, double> kPrefixes{{"", 1},         {"centi", 1e-2}, {"milli", 1e-3},
+                                                         {"micro", 1e-6}, {"nano", 1e-9},  {"pico", 1e-12},
+                                                         {"deci", 1e-1},  {"kilo", 1e3},   {"femto", 1e-15}};
     if (unit == "angstrom") return 1e-10;
     if (unit == "minute") return 60;
     if (unit == "hour") return 3600;
@@ -102,13 +102,6 @@ struct Placement {
 constexpr std::string_view kSpace = "xyz";
 
 } // namespace
-
-bool isZarr(const std::string& path) {
-    std::error_code ec;
-    for (const char* name : {"zarr.json", ".zattrs", ".zgroup", ".zarray"})
-        if (fs::is_regular_file(path + "/" + name, ec)) return true;
-    return false;
-}
 
 std::int64_t OmeZarr::Image::size(char axis, std::size_t level) const {
     const std::size_t at = axes.find(axis);

@@ -10,9 +10,6 @@
 
 namespace pellucid {
 
-/// Whether a folder holds Zarr.
-bool isZarr(const std::string& path);
-
 class OmeZarr final : public ForeignVolume {
 public:
     /// `wanted`: an image or an array by its path in the folder; empty: the largest image, or the largest array where
@@ -29,11 +26,11 @@ public:
 private:
     /// What can be opened: arrays of one image, from fine to coarse.
     struct Image {
-        std::string name;                ///< path in the folder; empty: the folder itself
+        std::string name; ///< path in the folder; empty: the folder itself
         std::vector<ZarrArray> levels;
-        std::string axes;                ///< a letter of "tczyx" for each
+        std::string axes; ///< a letter of "tczyx" for each
         Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
-        double stepWidth = 0;            ///< in timeUnit; 0: not known
+        double stepWidth = 0; ///< in timeUnit; 0: not known
         std::string timeUnit;
         std::vector<std::string> notices;
         std::int64_t size(char axis, std::size_t level = 0) const;

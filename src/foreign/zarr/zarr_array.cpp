@@ -27,7 +27,8 @@ constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30; ///< bytes
 json jsonAt(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     std::string text;
-    for (std::vector<char> piece(65536); in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0;) {
+    for (std::vector<char> piece(65536);
+         in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0;) {
         text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
         if (text.size() > kMostMetadata) throw FileError("the metadata are too long", path, "correct the file");
     }
@@ -61,7 +62,8 @@ float floatOfHalf(std::uint16_t half) {
 
 void swapEach(std::vector<char>& values, std::size_t size) {
     for (std::size_t at = 0; at + size <= values.size(); at += size)
-        std::reverse(values.begin() + static_cast<std::ptrdiff_t>(at), values.begin() + static_cast<std::ptrdiff_t>(at + size));
+        std::reverse(values.begin() + static_cast<std::ptrdiff_t>(at),
+                     values.begin() + static_cast<std::ptrdiff_t>(at + size));
 }
 
 /// The value of chunks that are not stored.
@@ -115,7 +117,8 @@ ZarrArray::ZarrArray(const std::string& folder, const ZarrNode& node) : m_folder
     std::iota(m_order.begin(), m_order.end(), 0u);
     if (node.version == 2) {
         readVersion2(metadata);
-        if (const auto names = node.attributes.find("_ARRAY_DIMENSIONS"); names != node.attributes.end() && names->is_array())
+        if (const auto names = node.attributes.find("_ARRAY_DIMENSIONS");
+            names != node.attributes.end() && names->is_array())
             for (const json& name : *names) m_names.push_back(name.is_string() ? name.get<std::string>() : "");
     } else {
         readVersion3(metadata);
@@ -170,7 +173,8 @@ void ZarrArray::readCodecs(const JsonValue& codecs, bool inShard) {
             const JsonValue order = codec["configuration"]["order"];
             std::vector<std::size_t> axes;
             for (const JsonValue& axis : order.items(m_shape.size()))
-                axes.push_back(m_order.at(static_cast<std::size_t>(axis.integer(0, static_cast<std::int64_t>(m_shape.size()) - 1))));
+                axes.push_back(m_order.at(
+                    static_cast<std::size_t>(axis.integer(0, static_cast<std::int64_t>(m_shape.size()) - 1))));
             m_order = axes;
             std::ranges::sort(axes);
             if (std::ranges::adjacent_find(axes) != axes.end()) order.fail("an axis stands there twice");
@@ -204,12 +208,11 @@ void ZarrArray::readType(const std::string& name, const JsonValue& at) {
         const char *two, *three;
         ValueType type;
     };
-    constexpr Type kTypes[] = {{"b1", "bool", ValueType::U8},    {"u1", "uint8", ValueType::U8},
-                               {"i1", "int8", ValueType::I8},    {"u2", "uint16", ValueType::U16},
-                               {"i2", "int16", ValueType::I16},  {"u4", "uint32", ValueType::U32},
-                               {"i4", "int32", ValueType::I32},  {"u8", "uint64", ValueType::U64},
-                               {"i8", "int64", ValueType::I64},  {"f2", "float16", ValueType::F32},
-                               {"f4", "float32", ValueType::F32}, {"f8", "float64", ValueType::F64}};
+    constexpr Type kTypes[] = {
+        {"b1", "bool", ValueType::U8},     {"u1", "uint8", ValueType::U8},    {"i1", "int8", ValueType::I8},
+        {"u2", "uint16", ValueType::U16},  {"i2", "int16", ValueType::I16},   {"u4", "uint32", ValueType::U32},
+        {"i4", "int32", ValueType::I32},   {"u8", "uint64", ValueType::U64},  {"i8", "int64", ValueType::I64},
+        {"f2", "float16", ValueType::F32}, {"f4", "float32", ValueType::F32}, {"f8", "float64", ValueType::F64}};
     for (const Type& type : kTypes)
         if (name == type.two || name == type.three) {
             m_type = type.type;
@@ -292,7 +295,8 @@ std::vector<char> ZarrArray::storedInShard(const Index& chunk, std::string& path
     for (const ZarrCodec codec : m_indexCodecs) index = unpacked(codec, index, index.size(), path);
     const auto number = [&](std::uint64_t at) {
         std::uint64_t value = 0;
-        for (std::size_t i = 8; i > 0; --i) value = value << 8 | static_cast<unsigned char>(index[static_cast<std::size_t>(at) + i - 1]);
+        for (std::size_t i = 8; i > 0; --i)
+            value = value << 8 | static_cast<unsigned char>(index[static_cast<std::size_t>(at) + i - 1]);
         return value;
     };
     const std::uint64_t offset = number(16 * inner), bytes = number(16 * inner + 8);
@@ -363,10 +367,12 @@ void ZarrArray::copy(const std::vector<char>& values, const Index& first, const 
         if (values.empty()) {
             for (std::int64_t i = 0; i < count; ++i) to[at + i * toStep] = fill;
         } else if (toStep == 1 && fromStep == 1) {
-            std::memcpy(to + at, values.data() + static_cast<std::size_t>(from) * sizeof(T), static_cast<std::size_t>(count) * sizeof(T));
+            std::memcpy(to + at, values.data() + static_cast<std::size_t>(from) * sizeof(T),
+                        static_cast<std::size_t>(count) * sizeof(T));
         } else {
             for (std::int64_t i = 0; i < count; ++i)
-                std::memcpy(to + at + i * toStep, values.data() + static_cast<std::size_t>(from + i * fromStep) * sizeof(T), sizeof(T));
+                std::memcpy(to + at + i * toStep,
+                            values.data() + static_cast<std::size_t>(from + i * fromStep) * sizeof(T), sizeof(T));
         }
     } while (advance(index, lo, rowEnd));
 }

@@ -18,9 +18,9 @@ namespace pellucid {
 
 /// The metadata of a node of a hierarchy, whichever version it has.
 struct ZarrNode {
-    std::string file;         ///< that the metadata are from
+    std::string file; ///< that the metadata are from
     int version = 2;
-    nlohmann::json metadata;  ///< of an array; null for a group
+    nlohmann::json metadata;   ///< of an array; null for a group
     nlohmann::json attributes; ///< an object
     bool isArray() const { return !metadata.is_null(); }
 };

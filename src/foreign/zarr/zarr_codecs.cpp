@@ -105,8 +105,8 @@ std::vector<char> unpackedLz4(const std::vector<char>& packed, std::size_t bytes
     for (std::size_t i = 4; i > 0; --i) size = size << 8 | static_cast<unsigned char>(packed[i - 1]);
     if (size > bytes) fail("this chunk unpacks to more than the array has", path);
     std::vector<char> out(size);
-    const int came = LZ4_decompress_safe(packed.data() + 4, out.data(), static_cast<int>(packed.size() - 4),
-                                         static_cast<int>(size));
+    const int came =
+        LZ4_decompress_safe(packed.data() + 4, out.data(), static_cast<int>(packed.size() - 4), static_cast<int>(size));
     if (came != static_cast<int>(size)) failDamaged(path);
     return out;
 }
@@ -134,7 +134,8 @@ std::uint32_t crc32cOf(const char* bytes, std::size_t count) {
         return table;
     }();
     std::uint32_t sum = ~0u;
-    for (std::size_t i = 0; i < count; ++i) sum = kTable[(sum ^ static_cast<unsigned char>(bytes[i])) & 255u] ^ sum >> 8;
+    for (std::size_t i = 0; i < count; ++i)
+        sum = kTable[(sum ^ static_cast<unsigned char>(bytes[i])) & 255u] ^ sum >> 8;
     return ~sum;
 }
 
@@ -152,10 +153,11 @@ std::vector<char> checkedCrc32c(const std::vector<char>& packed, const std::stri
 
 ZarrCodec zarrCodecNamed(const std::string& name, const JsonValue& at) {
     static const std::map<std::string, ZarrCodec> kNames{
-        {"gzip", ZarrCodec::Gzip}, {"zlib", ZarrCodec::Zlib},         {"zstd", ZarrCodec::Zstd},
-        {"blosc", ZarrCodec::Blosc}, {"numcodecs.zlib", ZarrCodec::Zlib}, {"lz4", ZarrCodec::Lz4},
-        {"numcodecs.lz4", ZarrCodec::Lz4}, {"bz2", ZarrCodec::Bz2},     {"numcodecs.bz2", ZarrCodec::Bz2},
-        {"crc32c", ZarrCodec::Crc32c}};
+        {"gzip", ZarrCodec::Gzip},           {"zlib", ZarrCodec::Zlib},
+        {"zstd", ZarrCodec::Zstd},           {"blosc", ZarrCodec::Blosc},
+        {"numcodecs.zlib", ZarrCodec::Zlib}, {"lz4", ZarrCodec::Lz4},
+        {"numcodecs.lz4", ZarrCodec::Lz4},   {"bz2", ZarrCodec::Bz2},
+        {"numcodecs.bz2", ZarrCodec::Bz2},   {"crc32c", ZarrCodec::Crc32c}};
     if (const auto found = kNames.find(name); found != kNames.end()) return found->second;
     at.fail("chunks packed by " + inQuotes(name) + " cannot be unpacked",
             "write the array again, packed by gzip, zstd or blosc");

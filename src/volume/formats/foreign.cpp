@@ -1,5 +1,5 @@
 // Formats that are read by libraries, in processes of their own (src/foreign, app/reader): DICOM by GDCM, pictures as
-// slices by OpenImageIO.
+// slices by OpenImageIO, Zarr by the libraries that unpack its chunks.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *kDicomContent = "a DICOM file", *kTiffContent = "a TIFF image"; ///< as describeContent() has it
-constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader";
+constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader",
+                     *kOfArrays = "pellucid-array-reader";
 
 ReaderRequest requestOf(const VolumeSource& source, const char* program) {
     ReaderRequest request;
@@ -42,6 +43,13 @@ ReaderRequest imageRequest(const VolumeSource& source) {
         if (describeContent(head) != kTiffContent) throw notOfFormat("a TIFF image", source.path, head);
     }
     return requestOf(source, kOfImages);
+}
+
+ReaderRequest zarrRequest(const VolumeSource& source) {
+    if (!holdsZarr(source.path))
+        throw FileError("this folder holds no Zarr metadata", source.path,
+                        "name the folder that has .zattrs or zarr.json");
+    return requestOf(source, kOfArrays);
 }
 
 template <auto requestFor>
@@ -104,6 +112,12 @@ bool holdsDicom(const std::string& folder) {
     return found;
 }
 
+bool holdsZarr(const std::string& folder) {
+    std::error_code ec;
+    return std::ranges::any_of(std::array{"zarr.json", ".zattrs", ".zgroup", ".zarray"},
+                               [&](const char* name) { return fs::is_regular_file(fs::path(folder) / name, ec); });
+}
+
 std::vector<std::string> imagesIn(const std::string& folder) {
     std::map<std::string, std::vector<std::string>> bySuffix;
     for (const std::string& path : filesIn(folder)) {
@@ -139,6 +153,10 @@ VolumeFormat dicomFormat() {
 VolumeFormat imageFormat() {
     return {"pictures",         {".tif", ".tiff"},       describe<imageRequest>,
             read<imageRequest>, dataFiles<imageRequest>, kTiffContent};
+}
+
+VolumeFormat zarrFormat() {
+    return {"OME-Zarr", {".zarr"}, describe<zarrRequest>, read<zarrRequest>, dataFiles<zarrRequest>};
 }
 
 } // namespace pellucid

@@ -43,11 +43,14 @@ VolumeFormat pvtiFormat();  ///< vtk_image.cpp
 VolumeFormat pvdFormat();   ///< vtk_collection.cpp
 VolumeFormat dicomFormat(); ///< foreign.cpp
 VolumeFormat imageFormat(); ///< foreign.cpp
+VolumeFormat zarrFormat();  ///< foreign.cpp; of folders only
 
 /// Whether a file is DICOM by its content.
 bool isDicom(const std::string& path);
 /// Whether a folder is to be opened as DICOM: the first files in it, or in folders below, are.
 bool holdsDicom(const std::string& folder);
+/// Whether a folder is one of Zarr.
+bool holdsZarr(const std::string& folder);
 /// Whether a folder is to be opened as a stack of pictures, one a file.
 bool holdsImages(const std::string& folder);
 /// The pictures in a folder that have the most frequent suffix, in the order in which people count.

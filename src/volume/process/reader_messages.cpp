@@ -156,7 +156,8 @@ json jsonOf(const ReaderBox& box) {
 
 ReaderBox boxIn(const json& message) {
     const JsonValue value = valueOf(message);
-    return {value["level"].whole(0, kMostWhole), {wholesIn(value["lo"], 0), wholesIn(value["hi"], 1)},
+    return {value["level"].whole(0, kMostWhole),
+            {wholesIn(value["lo"], 0), wholesIn(value["hi"], 1)},
             value["component"].whole(0, kMostWhole)};
 }
 

@@ -21,9 +21,9 @@ struct ReaderRequest {
     };
     std::string program; ///< that is asked: "pellucid-reader" or "pellucid-image-reader"
     Task task = Task::Describe;
-    std::string path;        ///< a file or a folder
-    std::string array;       ///< the series that is wanted; empty: the one with the most slices
-    int step = 0;            ///< the time step that is read
+    std::string path;  ///< a file or a folder
+    std::string array; ///< the series that is wanted; empty: the one with the most slices
+    int step = 0;      ///< the time step that is read
 };
 
 /// A coarser copy of the voxels that the files have besides.
@@ -35,8 +35,8 @@ struct ReaderLevel {
 
 /// What it says of the voxels, which it writes box by box: x fastest, without gaps, in this machine's byte order.
 struct ReaderLayout {
-    FileLayout layout;             ///< but for where the values are
-    std::optional<double> missing; ///< the value that stands for none, as the file says
+    FileLayout layout;               ///< but for where the values are
+    std::optional<double> missing;   ///< the value that stands for none, as the file says
     std::vector<ReaderLevel> levels; ///< from fine to coarse
     int layersAtOnce = 1;            ///< layers across z that are stored together
 };

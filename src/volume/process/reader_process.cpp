@@ -37,7 +37,7 @@ using nlohmann::json;
 constexpr double kMostSilentSeconds = 120;
 constexpr std::size_t kMostLine = 64u << 20;
 /// Voxels that files with coarser copies are opened with where nobody has said how many.
-constexpr std::size_t kFirstLook = std::size_t{1} << 27;
+constexpr std::size_t kFirstLook = std::size_t{1} << 25;
 /// What the voxels are called in the reader: the number of its file.
 constexpr int kVoxelsThere = 3;
 
@@ -286,7 +286,8 @@ public:
         m_componentBytes = m_layerBytes * static_cast<std::uint64_t>(size.z);
         m_components =
             componentsAreApart(layout) ? static_cast<std::uint64_t>(contentsOf(layout).components) : std::uint64_t{1};
-        const auto affordable = static_cast<int>(std::clamp<std::uint64_t>(kMostSlab / m_layerBytes, 1, 1u << 30));
+        const std::uint64_t most = std::min(kMostSlab, availableMemoryBytes() / 4);
+        const auto affordable = static_cast<int>(std::clamp<std::uint64_t>(most / m_layerBytes, 1, 1u << 30));
         m_layers = affordable >= answer.layersAtOnce ? affordable - affordable % answer.layersAtOnce : affordable;
         const std::uint64_t room = m_layerBytes * static_cast<std::uint64_t>(std::min(m_layers, size.z));
         requireMemory("reading it", path, room);
@@ -365,17 +366,23 @@ LevelPlan levelFor(const ExcerptPlan& wanted, const ReaderLayout& answer) {
     return best;
 }
 
-/// planExcerpt(), but where files have coarser copies, one of these is enough for a first look.
+/// planExcerpt(); where files have coarser copies and nobody has said how fine it is to be, one of these that has room
+/// and is enough for a first look.
 ExcerptPlan planFor(const VolumeSource& source, const ReaderLayout& answer) {
     const FileContents contents = contentsOf(answer.layout);
-    ExcerptPlan plan = planExcerpt(source, contents.dims, contents.type, false);
-    if (source.downsample != 0) return plan;
+    const ExcerptPlan plan = planExcerpt(source, contents.dims, contents.type, false);
+    if (source.downsample != 0 || (!plan.excerpt.forMemory && voxelCount(plan.dims) <= kFirstLook)) return plan;
+    ExcerptPlan chosen = plan;
     for (const ReaderLevel& level : answer.levels) {
-        if (voxelCount(plan.dims) <= kFirstLook) break;
         const int factor = std::max({level.factors.x, level.factors.y, level.factors.z});
-        if (factor > plan.excerpt.factor) plan = planOf(plan.region, contents.dims, factor);
+        if (factor < plan.excerpt.factor) continue;
+        chosen = planOf(plan.region, contents.dims, factor);
+        chosen.excerpt.forMemory = plan.excerpt.forMemory;
+        chosen.neededAtFull = plan.neededAtFull;
+        chosen.available = plan.available;
+        if (voxelCount(chosen.dims) <= kFirstLook) break;
     }
-    return plan;
+    return chosen;
 }
 
 /// Says what is read of a level, and where it lies.
