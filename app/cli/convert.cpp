@@ -18,6 +18,16 @@ struct Options {
     std::string out;
 };
 
+/// Of a file, or of all that is in a folder.
+std::uintmax_t bytesAt(const std::string& path, std::error_code& ec) {
+    namespace fs = std::filesystem;
+    if (!fs::is_directory(path, ec)) return fs::file_size(path, ec);
+    std::uintmax_t bytes = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path, ec))
+        if (entry.is_regular_file(ec)) bytes += entry.file_size(ec);
+    return bytes;
+}
+
 Answer run(const Options& o, Progress& progress) {
     if (o.out.empty()) throw UsageError("the file name is empty", "--out", "name the file to write");
     atOption("--out " + o.out, [&] { checkVolumeSuffix(o.out); });
@@ -29,7 +39,7 @@ Answer run(const Options& o, Progress& progress) {
     notices.insert(notices.end(), lost.begin(), lost.end());
     const SampleType type = o.type.value_or(volume.sampleType());
     std::error_code ec;
-    const std::uintmax_t bytes = std::filesystem::file_size(o.out, ec);
+    const std::uintmax_t bytes = bytesAt(o.out, ec);
     Json json{{"command", "convert"},
               {"file", o.out},
               {"dims", jsonFromDims(volume.dims())},
@@ -51,7 +61,7 @@ Command addConvert(CLI::App& program) {
         *app, "--type", "TYPE",
         [o](const std::string& text, const std::string& option) { o->type = parseName<SampleType>(text, option); },
         "type of the samples: u8 i8 u16 i16 u32 i32 f32 f64; what is rounded or cut is said (default: their own)");
-    addValue(*app, "--out", "FILE", o->out, anyText, "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti")
+    addValue(*app, "--out", "FILE", o->out, anyText, "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti .tif .zarr")
         ->required();
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

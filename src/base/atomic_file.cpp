@@ -181,6 +181,53 @@ void writeAtomically(const std::string& path, const std::function<void(OutputFil
     }
 }
 
+void OutputFolder::write(const std::string& name, std::string_view bytes) {
+    const fs::path file = fs::path(m_temporary) / name;
+    std::error_code ec;
+    fs::create_directories(file.parent_path(), ec);
+    if (ec) throw cannotWrite(m_path, ec.value());
+    OutputFile out(uninterrupted([&] { return open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); }),
+                   m_path);
+    if (out.m_descriptor < 0) throw cannotWrite(m_path, errno);
+    out.write(bytes);
+    out.close(false);
+}
+
+void writeFolderAtomically(const std::string& path, const std::function<void(OutputFolder&)>& write) {
+    fs::path target = path;
+    if (target.filename().empty()) target = target.parent_path(); // "name/"
+    requireWritable(target.string());
+    if (typeOf(target.string()) != fs::file_type::not_found)
+        throw FileError("a file has this name", target.string(), "choose another name");
+    tellOfWriting(target.string());
+    OutputFolder folder;
+    folder.m_path = target.string();
+    std::optional<Unfinished> entry;
+    for (bool isNew = false; !isNew;) { // one of this name was left by a process of this number that was killed
+        folder.m_temporary = temporaryBeside(target);
+        entry.emplace(folder.m_temporary);
+        std::error_code ec;
+        isNew = fs::create_directory(folder.m_temporary, ec);
+        if (ec) throw cannotWrite(folder.m_path, ec.value());
+    }
+    try {
+        write(folder);
+        // All of it is on the disk before it has its name.
+        const int descriptor = uninterrupted([&] { return open(folder.m_temporary.c_str(), O_RDONLY | O_CLOEXEC); });
+        const int failure = descriptor < 0 || syncfs(descriptor) != 0 ? errno : 0;
+        if (descriptor >= 0) ::close(descriptor);
+        if (failure != 0) throw cannotWrite(folder.m_path, failure);
+        if (g_keeps && std::rename(folder.m_temporary.c_str(), target.c_str()) != 0)
+            throw cannotWrite(folder.m_path, errno);
+    } catch (...) {
+        std::error_code ec;
+        fs::remove_all(folder.m_temporary, ec);
+        throw;
+    }
+    std::error_code ec;
+    if (!g_keeps) fs::remove_all(folder.m_temporary, ec);
+}
+
 JointFile::~JointFile() {
     if (m_descriptor >= 0) ::close(m_descriptor);
 }
@@ -285,7 +332,11 @@ std::string readText(const std::string& path, std::size_t mostBytes) {
 
 void removeUnfinishedFiles() noexcept {
     const std::lock_guard lock(g_mutex);
-    for (const std::string& path : unfinished()) ::unlink(path.c_str());
+    for (const std::string& path : unfinished())
+        if (::unlink(path.c_str()) != 0 && errno == EISDIR) {
+            std::error_code ec;
+            fs::remove_all(path, ec);
+        }
 }
 
 } // namespace pellucid

@@ -22,6 +22,7 @@ public:
 
 private:
     friend void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write);
+    friend class OutputFolder;
     OutputFile(int descriptor, std::string path) : m_descriptor(descriptor), m_path(std::move(path)) {}
     ~OutputFile();
     void close(bool flushToDisk);
@@ -37,6 +38,20 @@ private:
 void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write);
 void writeBytesAtomically(const std::string& path, std::span<const unsigned char> bytes);
 void writeTextAtomically(const std::string& path, std::string_view text);
+
+/// A folder while it is being written. Several threads may write different files of it.
+class OutputFolder {
+public:
+    /// `name`: a path in the folder, whose folders are made. Throws FileError.
+    void write(const std::string& name, std::string_view bytes);
+
+private:
+    friend void writeFolderAtomically(const std::string& path, const std::function<void(OutputFolder&)>& write);
+    std::string m_temporary, m_path;
+};
+
+/// writeAtomically() for a folder. Throws FileError, too, where something has this name already.
+void writeFolderAtomically(const std::string& path, const std::function<void(OutputFolder&)>& write);
 
 /// Of several processes that do the same one keeps what they write; the others make sure that it could be written, and
 /// throw their bytes away. At first a process keeps it.

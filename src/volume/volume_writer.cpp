@@ -15,7 +15,8 @@ namespace pellucid {
 namespace {
 
 const std::vector<VolumeWriter>& writers() {
-    static const std::vector<VolumeWriter> kWriters{nrrdWriter(), metaImageWriter(), niftiWriter(), vtiWriter()};
+    static const std::vector<VolumeWriter> kWriters{nrrdWriter(), metaImageWriter(), niftiWriter(),
+                                                    vtiWriter(),  tiffWriter(),      omeZarrWriter()};
     return kWriters;
 }
 

@@ -26,6 +26,8 @@ VolumeWriter nrrdWriter();
 VolumeWriter metaImageWriter();
 VolumeWriter niftiWriter();
 VolumeWriter vtiWriter(); ///< vtk_image_writer.cpp
+VolumeWriter tiffWriter();
+VolumeWriter omeZarrWriter(); ///< of folders
 
 /// The samples as they lie in memory, whose byte order the header has to name.
 std::span<const std::byte> sampleBytes(const Volume& volume);
