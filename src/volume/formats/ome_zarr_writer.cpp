@@ -104,7 +104,7 @@ void write(const Volume& volume, const std::string& path, const JobControl& job)
             if (g.worldAxes == WorldAxes::Patient) axes.back()["unit"] = "millimeter";
         }
         const json image{{"version", "0.4"}, {"axes", axes}, {"datasets", datasets}, {"type", "mean"}};
-        folder.write(".zattrs", json{{"multiscales", {image}}}.dump(2));
+        folder.write(".zattrs", json{{"multiscales", json::array({image})}}.dump(2));
         folder.write(".zgroup", json{{"zarr_format", 2}}.dump(2));
     });
 }

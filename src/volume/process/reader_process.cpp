@@ -36,6 +36,8 @@ using nlohmann::json;
 /// Without a word for so long it is ended: it tells of every file that it has read.
 constexpr double kMostSilentSeconds = 120;
 constexpr std::size_t kMostLine = 64u << 20;
+/// Voxels that are read only where somebody has said so: a short header can claim any number.
+constexpr std::size_t kMostUnasked = std::size_t{1} << 37;
 /// Voxels that files with coarser copies are opened with where nobody has said how many.
 constexpr std::size_t kFirstLook = std::size_t{1} << 25;
 /// What the voxels are called in the reader: the number of its file.
@@ -427,6 +429,9 @@ Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool m
         return readSamples(taken, layout, job.part(1, 2));
     }
     const LevelPlan level = levelFor(plan, answer);
+    if (source.downsample == 0 && voxelCount(level.region.hi - level.region.lo) > kMostUnasked)
+        throw FileError("reading its " + dimsText(level.region.hi - level.region.lo) + " voxels would take hours",
+                        source.path, "open a region of them, or say how much coarser they are to be");
     placeLevel(layout, answer, level);
     layout.open = [&](const JobControl& reading) -> std::unique_ptr<ByteSource> {
         return std::make_unique<BoxBytes>(reader, answer, level.level, level.region, source.path, reading);
