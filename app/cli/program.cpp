@@ -18,6 +18,8 @@
 #include "output_files.h"
 #include "parse.h"
 #include "ranks/communicator.h"
+#include "volume/file_contents.h"
+#include "volume/raw_guess.h"
 
 namespace pellucid::cli {
 
@@ -110,6 +112,19 @@ std::string problem(const CLI::App& program, const CLI::ParseError& error) {
     return text;
 }
 
+/// ", perhaps --raw 256,256,109,u16" by the voxels of a headerless file; empty where these tell nothing.
+std::string likelyLayout(const std::string& path) {
+    constexpr double kLikely = 0.5;
+    try {
+        if (!mayBeHeaderless(path)) return {};
+        const std::vector<RawGuess> guesses = lookAtRaw(path, 1).guesses;
+        if (guesses.empty() || guesses.front().agreement < kLikely) return {};
+        return ", perhaps --raw " + rawLayoutText(guesses.front().layout);
+    } catch (const Error&) {
+        return {};
+    }
+}
+
 /// "WHAT, WHERE, WHAT TO DO": where a setting would help, by the name of its option.
 std::string lineOf(const Error& e) {
     const auto advice = [&]() -> std::string {
@@ -118,9 +133,9 @@ std::string lineOf(const Error& e) {
         case Remedy::AllowMoreMemory:
             return "allow more with --memory, or use a smaller volume";
         case Remedy::GiveRawLayout:
-            return said + "give --raw NX,NY,NZ,TYPE for headerless data";
+            return said + "give --raw NX,NY,NZ,TYPE for headerless data" + likelyLayout(e.where());
         case Remedy::CorrectRawLayout:
-            return "correct --raw or --skip";
+            return "correct --raw or --skip" + likelyLayout(e.where());
         case Remedy::GiveSpacing:
             return said + "give --spacing SX,SY,SZ";
         case Remedy::NoComponent:

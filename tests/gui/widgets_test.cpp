@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include <QComboBox>
 #include <QDialogButtonBox>
 #include <QDoubleSpinBox>
 #include <QLabel>
@@ -13,6 +14,7 @@
 #include <QSpinBox>
 #include <QTemporaryDir>
 #include <QToolButton>
+#include <zlib.h>
 
 #include "dialogs/raw_dialog.h"
 #include "panels/target_bars.h"
@@ -189,6 +191,39 @@ TEST_CASE("the raw dialog opens only what fits the file", "[raw]") {
     CHECK(dialog.findChild<QLabel*>("rawVerdict")->text().contains("64")); // one more plane: 8·4·2 bytes
 }
 
+TEST_CASE("the raw dialog guesses by the voxels, packed ones, too, and shows a slice", "[raw]") {
+    const QTemporaryDir folder;
+    const QString path = folder.filePath("data.bin.gz");
+    std::string bytes; // 24 x 20 x 16 of u16, a smooth slope along each axis
+    for (int z = 0; z < 16; ++z)
+        for (int y = 0; y < 20; ++y)
+            for (int x = 0; x < 24; ++x) {
+                const int value = 300 + 11 * x + 17 * y + 23 * z;
+                bytes += static_cast<char>(value & 255);
+                bytes += static_cast<char>(value >> 8);
+            }
+    gzFile out = gzopen(path.toUtf8().constData(), "wb");
+    gzwrite(out, bytes.data(), static_cast<unsigned>(bytes.size()));
+    gzclose(out);
+    RawDialog dialog(QStringList{path});
+    auto* open = dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
+    CHECK_FALSE(open->isEnabled()); // it is being unpacked
+    REQUIRE(waitFor([&] { return open->isEnabled(); }));
+    CHECK(dialog.layoutOfFile().dims == Int3(24, 20, 16));
+    CHECK(dialog.layoutOfFile().type == SampleType::U16);
+    auto* picture = dialog.findChild<QLabel*>("rawPicture");
+    REQUIRE(waitFor([&] { return !picture->pixmap().isNull(); }));
+    CHECK(picture->pixmap().width() == 220);
+    CHECK(picture->pixmap().height() == 183); // 220 · 20 / 24
+    // Another one of the list is taken as a whole.
+    auto* guesses = dialog.findChild<QComboBox*>("rawGuesses");
+    REQUIRE(guesses->count() > 1);
+    guesses->setCurrentIndex(1);
+    Q_EMIT guesses->activated(1);
+    CHECK_FALSE(dialog.layoutOfFile() == RawLayout{{24, 20, 16}, SampleType::U16});
+    CHECK(open->isEnabled());
+}
+
 TEST_CASE("notices stay until they are dismissed", "[notices]") {
     Notices notices;
     QWidget window;
@@ -214,13 +249,13 @@ TEST_CASE("notices stay until they are dismissed", "[notices]") {
 }
 
 TEST_CASE("the layout of raw data is guessed from name and size", "[raw]") {
-    const RawLayout nucleon = guessRawLayout("/a/nucleon_41x41x41_uint8.raw", 41 * 41 * 41);
+    const RawLayout nucleon = rawLayoutInName("/a/nucleon_41x41x41_uint8.raw", 41 * 41 * 41);
     CHECK(nucleon.dims == Int3(41, 41, 41));
     CHECK(nucleon.type == SampleType::U8);
-    const RawLayout foot = guessRawLayout("foot_16x8x4_int16.raw", 1024);
+    const RawLayout foot = rawLayoutInName("foot_16x8x4_int16.raw", 1024);
     CHECK(foot.dims == Int3(16, 8, 4));
     CHECK(foot.type == SampleType::I16);
-    CHECK(guessRawLayout("x_4x4x4_float32.raw", 256).type == SampleType::F32);
-    CHECK(guessRawLayout("x_4x4x4.raw", 256).type == SampleType::F32); // four bytes each
-    CHECK(guessRawLayout("cube.dat", 64 * 64 * 64).dims == Int3(64, 64, 64));
+    CHECK(rawLayoutInName("x_4x4x4_float32.raw", 256).type == SampleType::F32);
+    CHECK(rawLayoutInName("x_4x4x4.raw", 256).type == SampleType::F32); // four bytes each
+    CHECK(rawLayoutInName("cube.dat", 64 * 64 * 64).dims == Int3(64, 64, 64));
 }

@@ -4,9 +4,12 @@
 #include <optional>
 
 #include <QDialog>
+#include <QImage>
 #include <QStringList>
 
-#include "volume/loader.h"
+#include "jobs/job.h"
+#include "jobs/rest_timer.h"
+#include "volume/raw_guess.h"
 
 class QComboBox;
 class QDoubleSpinBox;
@@ -17,10 +20,8 @@ class QSpinBox;
 
 namespace pellucid::gui {
 
-/// What the file's name and size say about its layout: "41x41x41" and a type's name in the name, else a cube of bytes.
-RawLayout guessRawLayout(const QString& path, qint64 bytes);
-
-/// For one file, or for all of a series, which are laid out alike.
+/// Begins with the layout in the file's name; guesses by the voxels follow, and a picture of what is chosen. For one
+/// file, or for all of a series, which are laid out alike.
 class RawDialog : public QDialog {
     Q_OBJECT
 public:
@@ -33,16 +34,26 @@ private:
     void lookAtSizes(const QStringList& paths);
     QString headOf(const QStringList& paths) const; ///< what is opened, as rich text
     void check();
+    void show(const RawLayout& layout);
+    void takeLook(const RawLook& look);
+    static QImage pictureOf(const VolumeSource& source, const JobControl& job);
 
-    qint64 m_bytes;    // of a file, as most have it
-    QStringList m_odd; // names of files of another size
+    QString m_path;
+    qint64 m_bytes;                               // of a file, as most have it; unpacked as soon as that is known
+    QStringList m_odd;                            // names of files of another size
+    bool m_isPacked = false, m_isTouched = false; // by gzip, unpacking has not ended; by the user
     QSpinBox* m_dims[3];
     QDoubleSpinBox* m_spacing[3];
     QComboBox *m_type, *m_endian;
     QDoubleSpinBox* m_skip; // a QSpinBox ends at 2 GiB
     QLineEdit* m_missing;
-    QLabel* m_verdict;
+    QLabel *m_verdict, *m_picture;
+    QComboBox* m_guesses;
     QPushButton* m_ok;
+    std::vector<RawLayout> m_layouts; // of m_guesses
+    Job<QString, RawLook> m_look;
+    Job<VolumeSource, QImage> m_pictures;
+    RestTimer m_rest;
 };
 
 } // namespace pellucid::gui

@@ -9,6 +9,7 @@
 #include <QVBoxLayout>
 
 #include "dialogs/closing_buttons.h"
+#include "dialogs/slice_picture.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
 
@@ -63,28 +64,7 @@ std::string SeriesChoiceDialog::series() const { return m_names.at(static_cast<s
 /// Empty where the series cannot be read: opening it says why.
 QImage SeriesChoiceDialog::pictureOf(const Asked& asked, const JobControl& job) {
     try {
-        const Volume slice = loadMiddleSlice(asked.source, {job.stop, {}});
-        const Int3 dims = slice.dims();
-        std::vector<double> values;
-        for (std::size_t i = 0; i < slice.size(); ++i)
-            if (slice.isValid(i)) values.push_back(slice.value(i));
-        if (values.empty()) return {};
-        const auto part = [&](double share) {
-            const auto at =
-                values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-            std::ranges::nth_element(values, at);
-            return *at;
-        };
-        constexpr double kDark = 0.01, kBright = 0.995; // a few wild values do not make the rest grey
-        const double lo = part(kDark), hi = std::max(part(kBright), lo + 1e-30);
-        QImage image(dims.x, dims.y, QImage::Format_Grayscale8);
-        for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x) {
-                const double value = slice.value(static_cast<std::size_t>(y) * static_cast<std::size_t>(dims.x) +
-                                                 static_cast<std::size_t>(x));
-                image.scanLine(y)[x] = static_cast<uchar>(std::clamp(255 * (value - lo) / (hi - lo), 0.0, 255.0));
-            }
-        return image;
+        return pictureOfSlice(loadMiddleSlice(asked.source, {job.stop, {}}));
     } catch (const Error&) {
         return {};
     }
