@@ -17,8 +17,9 @@ namespace {
 constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
-    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
-                                                    pvtiFormat(), pvdFormat(),       imageFormat(), dicomFormat()};
+    static const std::vector<VolumeFormat> kFormats{nrrdFormat(),      metaImageFormat(), niftiFormat(),
+                                                    vtiFormat(),       pvtiFormat(),      pvdFormat(),
+                                                    vtkLegacyFormat(), imageFormat(),     dicomFormat()};
     return kFormats;
 }
 

@@ -758,8 +758,8 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
     CHECK(volumeFilePatterns() == std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz",
-                                                           "*.hdr", "*.hdr.gz", "*.vti", "*.pvti", "*.pvd", "*.tif",
-                                                           "*.tiff", "*.dcm", "*.dicom", "*.ima"});
+                                                           "*.hdr", "*.hdr.gz", "*.vti", "*.pvti", "*.pvd", "*.vtk",
+                                                           "*.tif", "*.tiff", "*.dcm", "*.dicom", "*.ima"});
 }
 
 TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {

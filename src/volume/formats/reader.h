@@ -41,6 +41,7 @@ VolumeFormat niftiFormat();
 VolumeFormat vtiFormat();   ///< vtk_image.cpp
 VolumeFormat pvtiFormat();  ///< vtk_image.cpp
 VolumeFormat pvdFormat();   ///< vtk_collection.cpp
+VolumeFormat vtkLegacyFormat();
 VolumeFormat dicomFormat(); ///< foreign.cpp
 VolumeFormat imageFormat(); ///< foreign.cpp
 

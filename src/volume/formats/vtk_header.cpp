@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
+#include <span>
 
 #include <glm/common.hpp>
 
@@ -185,6 +187,26 @@ std::string textOf(const VtkExtent& extent) {
     for (int a = 0; a < 3; ++a)
         text += (a == 0 ? "" : " ") + std::to_string(extent.lo[a]) + " " + std::to_string(extent.hi[a] - 1);
     return text;
+}
+
+std::vector<std::string> offeredNames(const std::vector<std::string>& ofPoints,
+                                      const std::vector<std::string>& ofCells) {
+    std::vector<std::string> names = ofPoints;
+    const std::set<std::string> known(ofPoints.begin(), ofPoints.end());
+    for (const std::string& name : ofCells) names.push_back(known.contains(name) ? name + " (cells)" : name);
+    return names;
+}
+
+std::size_t chosenOf(const std::vector<std::string>& offered, const std::string& asked, const std::string& active,
+                     const std::string& path) {
+    const auto found = std::ranges::find(offered, asked.empty() ? active : asked);
+    if (!asked.empty() && found == offered.end()) {
+        const auto shown = std::span(offered).first(std::min<std::size_t>(offered.size(), 20));
+        throw UsageError("there is no array " + inQuotes(asked), path,
+                         "it has " + joined(shown, ", ", [](const std::string& name) { return name.substr(0, 40); }));
+    }
+    const bool isNamed = !asked.empty() || !active.empty();
+    return isNamed && found != offered.end() ? static_cast<std::size_t>(found - offered.begin()) : 0;
 }
 
 void checkIsXml(const std::string& path) {

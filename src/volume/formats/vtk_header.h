@@ -74,6 +74,16 @@ void checkIsXml(const std::string& path);
 /// The root of a file, which has to be a VTKFile of `type`.
 void checkRoot(const XmlTag& tag, const std::string& type, const std::string& path);
 
+/// Names by which arrays of points and cells are offered: "NAME (cells)" where points have an array of the same name.
+std::vector<std::string> offeredNames(const std::vector<std::string>& ofPoints,
+                                      const std::vector<std::string>& ofCells);
+/// Which of `offered` is the array that is asked for; where none is, the one of the name `active`, else the first.
+/// Throws UsageError for a name that is not there. `offered` is not empty.
+std::size_t chosenOf(const std::vector<std::string>& offered, const std::string& asked, const std::string& active,
+                     const std::string& path);
+/// The values of a file are those of cells: said once for all formats.
+inline constexpr const char* kCellsNotice = "the values are those of cells, each of which lies between points";
+
 /// Throws FileError.
 [[noreturn]] void failInVtk(const std::string& path, const std::string& what,
                             const std::string& toDo = "correct the file, or write it again");
