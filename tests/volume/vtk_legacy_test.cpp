@@ -139,7 +139,8 @@ TEST_CASE("legacy VTK files have arrays of many kinds", "[vtk-legacy]") {
                         "last 3 12 float\n" + floats(36, 800));
         const std::string path = folder.write("a.vtk", text);
         const FileContents contents = contentsOf(sourceOf(path));
-        CHECK(contents.arrays == Names{"flow a", "two", "n", "t", "c d", "mask", "of_cells", "last", "of_cells (cells)"});
+        CHECK(contents.arrays ==
+              Names{"flow a", "two", "n", "t", "c d", "mask", "of_cells", "last", "of_cells (cells)"});
         CHECK(contents.array == "two"); // the first scalars
         CHECK(contents.components == 2);
         CHECK(contents.times == std::vector<double>{7});

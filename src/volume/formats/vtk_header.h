@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "base/job.h"
+#include "volume/formats/vtk_bytes.h"
 #include "volume/formats/xml_tags.h"
 
 namespace pellucid {
@@ -31,12 +32,14 @@ struct VtkArray {
     std::int64_t components = 1;
     std::uint64_t contentStart = 0; ///< byte of the file behind its tag
     std::uint64_t offset = 0;       ///< of appended data
+    bool ofCells = false;
 };
 
-/// The arrays of points.
+/// The arrays of points, then those of cells.
 struct VtkArrays {
-    std::string active; ///< name of the one to be shown; may be empty
+    std::string active; ///< name of the one of points to be shown; may be empty
     std::vector<VtkArray> all;
+    std::vector<std::string> names() const; ///< as they are offered
 };
 
 /// A part of an image that is stored by itself.
@@ -50,17 +53,21 @@ struct VtkPiece {
 struct VtkImage {
     std::string path;
     bool piecesInFiles = false; ///< .pvti: each piece is a .vti of its own
-    bool bigEndian = false, compressed = false;
+    bool bigEndian = false;
+    VtkPacking packing = VtkPacking::None;
     int headerBytes = 4;
     std::optional<VtkExtent> extent; ///< of the element ImageData, which has to be there
     std::string spacing, origin, direction;
     VtkArrays arrays; ///< those that each piece has to have, by name and type
-    std::size_t cellArrays = 0;
     std::vector<VtkPiece> pieces;
     std::optional<VtkArray> time; ///< FieldData's TimeValue
     bool appendedBase64 = false;
     std::optional<std::uint64_t> appendedStart; ///< byte of the file that offset 0 is
 };
+
+/// The cells between the points of a part of an image, numbered like the points at which they begin. Along an axis
+/// along which the whole image has one point there is one layer of cells.
+VtkExtent cellsOf(const VtkExtent& part, const VtkExtent& whole);
 
 /// Goes through a file of image data; where `piecesInFiles`, through one that names its pieces, and not through those.
 /// Throws FileError.

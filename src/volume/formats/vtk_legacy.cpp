@@ -77,6 +77,8 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
 
 } // namespace
 
-VolumeFormat vtkLegacyFormat() { return {"VTK legacy file", {".vtk"}, describeLayout<layoutOf>, readLayout<layoutOf>}; }
+VolumeFormat vtkLegacyFormat() {
+    return {"VTK legacy file", {".vtk"}, describeLayout<layoutOf>, readLayout<layoutOf>, nullptr, kVtkLegacyContent};
+}
 
 } // namespace pellucid
