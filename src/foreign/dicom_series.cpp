@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "foreign/dicom_pixels.h"
 #include "volume/file_names.h"
+#include "volume/formats/content.h"
 #include "volume/formats/file_check.h"
 
 namespace pellucid {

@@ -1,5 +1,6 @@
 #include "volume/loader.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <ranges>
 
@@ -17,8 +18,9 @@ namespace {
 constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
-    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
-                                                    pvtiFormat(), pvdFormat(),       imageFormat(), dicomFormat()};
+    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(),     vtiFormat(),
+                                                    pvtiFormat(), pvdFormat(),       vtkLegacyFormat(), pvmFormat(),
+                                                    datFormat(),  vvdFormat(),       imageFormat(),     dicomFormat()};
     return kFormats;
 }
 
@@ -35,22 +37,50 @@ const VolumeFormat* formatOfFolder(const std::string& path) {
     return holdsZarr(path) ? &kZarr : holdsDicom(path) ? &kDicom : holdsImages(path) ? &kImages : nullptr;
 }
 
-/// Null where neither suffix nor content tells one.
-const VolumeFormat* findFormat(const std::string& path) {
+bool hasOneOf(const std::string& path, const std::vector<std::string>& suffixes) {
     const std::string lower = lowerCase(std::filesystem::path(path).filename().string());
+    return std::ranges::any_of(
+        suffixes, [&](const std::string& suffix) { return lower.size() > suffix.size() && lower.ends_with(suffix); });
+}
+
+/// Null where the suffix promises none.
+const VolumeFormat* formatOfSuffix(const std::string& path) {
     for (const VolumeFormat& format : formats())
-        for (const std::string& suffix : format.suffixes)
-            if (lower.size() > suffix.size() && lower.ends_with(suffix)) return &format;
-    return isFolder(path) ? formatOfFolder(path) : formatOfContent(contentOf(path));
+        if (hasOneOf(path, format.suffixes)) return &format;
+    return nullptr;
+}
+
+/// Of a file that is only a part, which has its header beside it.
+const VolumeFormat* formatBeside(const std::string& path) {
+    for (const VolumeFormat& format : formats())
+        if (format.isBeside != nullptr && hasOneOf(path, format.sharedSuffixes) && format.isBeside(path))
+            return &format;
+    return nullptr;
+}
+
+/// By what is in the file; where that does not tell, by the suffix. Null where neither does.
+const VolumeFormat* findFormat(const std::string& path) {
+    if (isFolder(path)) {
+        const VolumeFormat* bySuffix = formatOfSuffix(path);
+        return bySuffix != nullptr ? bySuffix : formatOfFolder(path);
+    }
+    if (const VolumeFormat* byContent = formatOfContent(contentOf(path))) return byContent;
+    const VolumeFormat* bySuffix = formatOfSuffix(path);
+    return bySuffix != nullptr ? bySuffix : formatBeside(path);
 }
 
 /// Throws FileError where there is none for this suffix.
 const VolumeFormat& formatOf(const std::string& path) {
     if (const VolumeFormat* format = findFormat(path)) return *format;
-    const bool named = lowerCase(path).ends_with(".raw");
-    const auto suffixes = [](const VolumeFormat& format) { return joined(format.suffixes, " "); };
+    const bool named =
+        lowerCase(path).ends_with(".raw") || std::ranges::any_of(formats(), [&](const VolumeFormat& format) {
+            return hasOneOf(path, format.sharedSuffixes);
+        });
+    std::vector<std::string> suffixes;
+    for (const VolumeFormat& format : formats())
+        suffixes.insert(suffixes.end(), format.suffixes.begin(), format.suffixes.end());
     throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format", path,
-                    named ? "" : "give one of " + joined(formats(), " ", suffixes), Remedy::GiveRawLayout);
+                    named ? "" : "give one of " + joined(suffixes, " "), Remedy::GiveRawLayout);
 }
 
 void requireNotEmpty(const std::string& path) {
@@ -184,18 +214,21 @@ Volume loadMiddleSlice(const VolumeSource& source, const JobControl& job) {
     return readMiddleOfDicom(source, job);
 }
 
-bool hasVolumeSuffix(const std::string& path) { return !isFolder(path) && findFormat(path) != nullptr; }
+bool hasVolumeSuffix(const std::string& path) {
+    return !isFolder(path) && (formatOfSuffix(path) != nullptr || formatOfContent(contentOf(path)) != nullptr);
+}
 
 bool mayBeHeaderless(const std::string& path) {
     std::error_code ec;
-    return std::filesystem::is_regular_file(path, ec) && !hasVolumeSuffix(path);
+    return std::filesystem::is_regular_file(path, ec) && findFormat(path) == nullptr;
 }
 
 const std::vector<std::string>& volumeFilePatterns() {
     static const std::vector<std::string> kPatterns = [] {
         std::vector<std::string> patterns;
         for (const VolumeFormat& format : formats())
-            for (const std::string& suffix : format.suffixes) patterns.push_back("*" + suffix);
+            for (const auto* suffixes : {&format.suffixes, &format.sharedSuffixes})
+                for (const std::string& suffix : *suffixes) patterns.push_back("*" + suffix);
         return patterns;
     }();
     return kPatterns;

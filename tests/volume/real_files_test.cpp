@@ -35,6 +35,13 @@ TEST_CASE("real files open with the sizes, types and ranges of their documentati
         {"nifti/ch2.nii.gz", {181, 217, 181}, SampleType::U8, {0, 254}, {1, 1, 1}},
         {"nifti/mpld_asl_4d.nii.gz", {64, 64, 24}, SampleType::F32, {0, 2839}, {3.4375, 3.4375, 4.95}},
         {"nrrd/FLAIR.nrrd", {124, 160, 140}, SampleType::U8, {0, 255}, {1, 1, 1}},
+        {"pvm/Lobster.pvm", {301, 324, 56}, SampleType::U8, {0, 255}, {1, 1, 1.4}},
+        {"pvm/Bucky.pvm", {32, 32, 32}, SampleType::U8, {0, 255}, {1, 1, 1}},
+        {"nucleon/nucleon.dat", {41, 41, 41}, SampleType::U8, {0, 249}, {1, 1, 1}},
+        {"tooth/tooth.dat", {140, 120, 161}, SampleType::U8, {0, 255}, {1, 1, 1}}, // says RGB and is not
+        {"walnut/walnut.dat", {128, 96, 114}, SampleType::U16, {0, 22526}, {1, 1, 1}},
+        {"walnut/walnut.vvd", {128, 96, 114}, SampleType::U16, {0, 22526}, {0.015625, 0.015625, 0.015625}},
+        {"hydrogenatom/hydrogenatom.dat", {128, 128, 128}, SampleType::U8, {0, 250}, {1, 1, 1}},
         {"mha/epi_short.mha", {64, 64, 37}, SampleType::I16, {0, 6690}, {3.4375, 3.4375, 3.8}},
     };
     for (const Expected& e : table) {

@@ -167,8 +167,8 @@ TEST_CASE("a number that is missing between others is a frame that cannot be rea
 
 TEST_CASE("of mixed suffixes the most frequent is taken", "[series]") {
     const TempFolder folder;
-    for (const char* name : {"a1.nrrd", "a2.nrrd", "b1.mha", "a1.raw", "a2.raw", "a3.raw"})
-        folder.write(name, oneVoxel('x'));
+    for (const char* name : {"a1.nrrd", "a2.nrrd", "b1.mha"}) folder.write(name, oneVoxel('x'));
+    for (const char* name : {"a1.raw", "a2.raw", "a3.raw"}) folder.write(name, "x");
     const SeriesListing listing = listSeries(sourceOf(folder.path(".")));
     CHECK(filesOfFrames(listing) == Names{"a1.nrrd", "a2.nrrd"});
     REQUIRE(listing.notices.size() == 1);

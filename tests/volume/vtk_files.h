@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "packers.h"
 #include "volume_files.h"
 
 namespace pellucid::test {
@@ -29,6 +30,7 @@ struct Style {
     enum class Place { Ascii, Inline, Raw, Base64 } place = Place::Ascii;
     bool compressed = false, bigEndian = false, wide = false; ///< wide: UInt64 headers
     std::size_t block = 10;                                   ///< bytes of a compressed block; the last one is shorter
+    enum class Packer { ZLib, Lz4, Lzma } packer = Packer::ZLib;
 };
 
 /// A number of a header, as the style has it.
@@ -48,21 +50,27 @@ inline std::string swapped(std::string bytes, std::size_t each, const Style& sty
     return bytes;
 }
 
+/// One block as the style has it.
+inline std::string packed(const Style& style, const std::string& bytes) {
+    if (style.packer == Style::Packer::Lz4) return lz4Packed(bytes);
+    return style.packer == Style::Packer::Lzma ? lzmaPacked(bytes) : zlibbed(bytes);
+}
+
 /// Header and data of an array.
 inline std::string stored(const Style& style, const std::string& data) {
     const bool text = style.place == Style::Place::Inline || style.place == Style::Place::Base64;
     const auto encoded = [&](const std::string& bytes) { return text ? base64(bytes) : bytes; };
     if (!style.compressed) return encoded(number(style, data.size()) + data);
-    std::string packed, sizes;
+    std::string all, sizes;
     std::uint64_t blocks = 0;
     for (std::size_t i = 0; i < data.size(); i += style.block, ++blocks) {
-        const std::string block = zlibbed(data.substr(i, style.block));
-        packed += block;
+        const std::string block = packed(style, data.substr(i, style.block));
+        all += block;
         sizes += number(style, block.size());
     }
     return encoded(number(style, blocks) + number(style, style.block) + number(style, data.size() % style.block) +
                    sizes) +
-           encoded(packed);
+           encoded(all);
 }
 
 struct Array {
@@ -73,7 +81,7 @@ struct Array {
 /// A part of an image, "0 1 0 2 0 0", and its arrays.
 struct Piece {
     std::string extent;
-    std::vector<Array> arrays;
+    std::vector<Array> arrays, cells = {};
 };
 
 /// A file of these pieces.
@@ -83,12 +91,13 @@ inline std::string vtiOfPieces(const Style& style, const std::vector<Piece>& pie
         "<?xml version=\"1.0\"?>\n<!-- <VTKFile type=\"Other\"> -->\n<VTKFile type=\"ImageData\" version=\"1.0\"";
     text += std::string(" byte_order=\"") + (style.bigEndian ? "BigEndian" : "LittleEndian") + "\"";
     if (style.wide) text += " header_type=\"UInt64\"";
-    if (style.compressed) text += " compressor=\"vtkZLibDataCompressor\"";
+    constexpr const char* kCompressors[] = {"vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
+    if (style.compressed)
+        text += std::string(" compressor=\"") + kCompressors[static_cast<std::size_t>(style.packer)] + "\"";
     text += ">\n <ImageData " + image + ">\n";
     std::string appended;
     for (const Piece& piece : pieces) {
-        text += "  <Piece Extent=\"" + piece.extent + "\">\n   <PointData" + pointData + ">\n";
-        for (const Array& array : piece.arrays) {
+        const auto add = [&](const Array& array) {
             text += "    <DataArray " + array.attributes;
             switch (style.place) {
             case Style::Place::Ascii:
@@ -101,8 +110,12 @@ inline std::string vtiOfPieces(const Style& style, const std::vector<Piece>& pie
                 text += " format=\"appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
                 appended += stored(style, array.data);
             }
-        }
-        text += "   </PointData>\n   <CellData></CellData>\n  </Piece>\n";
+        };
+        text += "  <Piece Extent=\"" + piece.extent + "\">\n   <PointData" + pointData + ">\n";
+        for (const Array& array : piece.arrays) add(array);
+        text += "   </PointData>\n   <CellData>";
+        for (const Array& array : piece.cells) add(array);
+        text += "</CellData>\n  </Piece>\n";
     }
     text += " </ImageData>\n";
     if (!appended.empty())
@@ -121,11 +134,13 @@ inline std::string vti(const Style& style, const std::vector<Array>& arrays, con
 /// A file whose pieces, given by extent and name, are files of their own. `arrays`: the attributes of each.
 inline std::string pvti(const std::string& image, const std::vector<std::string>& arrays,
                         const std::vector<std::pair<std::string, std::string>>& pieces,
-                        const std::string& pointData = "") {
+                        const std::string& pointData = "", const std::vector<std::string>& cells = {}) {
     std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PImageData\" version=\"1.0\">\n <PImageData " + image +
                        " GhostLevel=\"0\">\n  <PPointData" + pointData + ">\n";
     for (const std::string& array : arrays) text += "   <PDataArray " + array + "/>\n";
-    text += "  </PPointData>\n";
+    text += "  </PPointData>\n  <PCellData>\n";
+    for (const std::string& array : cells) text += "   <PDataArray " + array + "/>\n";
+    text += "  </PCellData>\n";
     for (const auto& [extent, source] : pieces)
         text += "  <Piece Extent=\"" + extent + "\" Source=\"" + source + "\"/>\n";
     return text + " </PImageData>\n</VTKFile>\n";

@@ -374,12 +374,12 @@ TEST_CASE("faults of pieces are told with the file that has them", "[vtk][pieces
     CHECK_THAT(ofHeader(pvti(image, {kNumber}, {{leftText, "left.vti"}, {"7 9 -2 3 2 5", "right.vti"}})),
                Contains("no piece has the point 7 -2 1 of the extent 3 9 -2 3 1 5"));
     CHECK_THAT(ofHeader(pvti(image, {kNumber}, {})), Contains("no piece has the point 3 -2 1"));
-    CHECK_THAT(ofHeader(pvti(image, {}, {{leftText, "left.vti"}})), Contains("no values for points"));
+    CHECK_THAT(ofHeader(pvti(image, {}, {{leftText, "left.vti"}})), Contains("no values for points, nor for cells"));
     CHECK_THAT(ofHeader(pvti(image, {"type=\"String\" Name=\"number\""}, {{kWhole.text(), "left.vti"}})),
                Contains("String"));
     CHECK_THAT(ofHeader(pvti("WholeExtent=\"3 9 -2 3\"", {kNumber}, {})), Contains("six whole numbers"));
     CHECK_THAT(ofHeader(pvti("WholeExtent=\"3 2 -2 3 1 5\"", {kNumber}, {})), Contains("at least 1"));
-    CHECK_THAT(ofHeader(fileOf(style, left)), Contains("not PImageData"));
+    CHECK_THAT(ofHeader("<VTKFile type=\"PPolyData\"/>"), Contains("not PImageData"));
     CHECK_THAT(ofHeader("<VTKFile type=\"PImageData\"/>"), Contains("no PImageData"));
     for (const std::string& source :
          {std::string("../left.vti"), std::string("a/../../left.vti"), std::string("/left.vti"), std::string("..")}) {

@@ -138,10 +138,10 @@ TEST_CASE("VTK files that are something else are refused in words", "[vtk][bad-i
             "c.vti",
             "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece><CellData>"
             "<DataArray type=\"UInt8\" format=\"ascii\">1</DataArray></CellData></Piece></ImageData></VTKFile>"))),
-        Contains("for cells, not for points"));
+        Contains("no error"));
     CHECK_THAT(changed("LittleEndian", "MiddleEndian"), Contains("MiddleEndian"));
     CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" header_type=\"UInt16\""), Contains("UInt16"));
-    CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" compressor=\"vtkLZ4DataCompressor\""), Contains("vtkLZ4"));
+    CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" compressor=\"vtkOtherDataCompressor\""), Contains("vtkOther"));
     CHECK_THAT(changed("UInt8", "String"), Contains("String"));
     CHECK_THAT(changed("\"ascii\"", "\"verse\""), Contains("verse"));
     CHECK_THAT(changed("format=\"ascii\"", "format=\"appended\" offset=\"0\""), Contains("no appended data"));
@@ -301,5 +301,123 @@ TEST_CASE("a collection lists its files by time", "[vtk]") {
                Contains("same time step"));
     CHECK_THAT(refused("<VTKFile type=\"Collection\"><Collection><DataSet file=\"f_a.vti\"/>"),
                Contains("ends within"));
-    CHECK_THAT(refused(vti({}, twoArrays({}))), Contains("not Collection"));
+    CHECK_THAT(refused("<VTKFile type=\"PolyData\"/>"), Contains("not Collection"));
+}
+
+TEST_CASE("image data of VTK packed by LZ4 and LZMA read", "[vtk]") {
+    const TempFolder folder;
+    using Place = Style::Place;
+    std::vector<std::int32_t> values(4000);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int32_t>(i * i % 1000 + i / 7);
+    const std::string image = "WholeExtent=\"0 19 0 19 0 9\"", extent = "0 19 0 19 0 9";
+    for (const auto packer : {Style::Packer::Lz4, Style::Packer::Lzma})
+        for (const Place place : {Place::Inline, Place::Raw, Place::Base64})
+            for (const std::size_t block : {72u, 4000u, 16000u, 99999u}) {
+                const Style style{place, true, block == 72, block != 72, block, packer};
+                CAPTURE(static_cast<int>(packer), static_cast<int>(place), block);
+                const std::string path = folder.write(
+                    "a.vti", vti(style, {{"type=\"Int32\" Name=\"a\"", "", swapped(bytesOf(values), 4, style)}}, "",
+                                 image, extent));
+                CHECK(samplesOf<std::int32_t>(loadVolume(sourceOf(path))) == values);
+                VolumeSource part = sourceOf(path);
+                part.region = VoxelRegion{{3, 4, 8}, {5, 5, 9}};
+                CHECK(samplesOf<std::int32_t>(loadVolume(part)) ==
+                      std::vector<std::int32_t>{values[3283], values[3284]});
+            }
+}
+
+TEST_CASE("damaged blocks of LZ4 and LZMA are refused", "[vtk][bad-input]") {
+    const TempFolder folder;
+    const std::string values(6000, 'x');
+    const auto file = [&](const Style& style, const std::string& data) {
+        return vti(style, {{"type=\"UInt8\" Name=\"a\"", "", data}}, "", "WholeExtent=\"0 5999 0 0 0 0\"",
+                   "0 5999 0 0 0 0");
+    };
+    for (const auto packer : {Style::Packer::Lz4, Style::Packer::Lzma}) {
+        CAPTURE(static_cast<int>(packer));
+        const Style style{Style::Place::Raw, true, false, true, 1000, packer};
+        const auto errorOfBytes = [&](const std::string& bytes) {
+            return errorOf(sourceOf(folder.write("a.vti", bytes)));
+        };
+        const std::string good = file(style, values);
+        CHECK(errorOfBytes(good) == "no error");
+        CHECK_THAT(errorOfBytes(file(style, values.substr(1))), Contains("5999 bytes") && Contains("6000"));
+        const std::size_t begin = good.find('_', good.find("<AppendedData")) + 1,
+                          data = begin + 9 * 8; // three sizes, and one of each block
+        CHECK_THAT(errorOfBytes(good.substr(0, data + 3)), Contains("longer than the file"));
+        std::string other = good;
+        other[data + 1] = static_cast<char>(0xff);
+        CHECK_THAT(errorOfBytes(other), Contains("damaged") || Contains("ends"));
+        other = good;
+        other[begin + 8 + 5] = 1; // blocks of more than any that LZ4 may have
+        CHECK(errorOfBytes(other) != "no error");
+    }
+    // One block that claims to be large.
+    const Style style{Style::Place::Raw, true, false, true, std::size_t{1} << 40, Style::Packer::Lz4};
+    std::string large = vti(style, {{"type=\"UInt8\" Name=\"a\"", "", std::string(2000000, 'y')}}, "",
+                            "WholeExtent=\"0 399999999 0 0 0 0\"", "0 399999999 0 0 0 0");
+    const std::size_t begin = large.find('_', large.find("<AppendedData")) + 1;
+    large.replace(begin + 8, 16, number(style, 400000000) + number(style, 0));
+    large.resize(large.size() + 2000000);
+    const std::string line = errorOf(sourceOf(folder.write("a.vti", large)));
+    CHECK_THAT(line, Contains("a compressed block of the array has 400.00 MB") || Contains("400 MB"));
+}
+
+TEST_CASE("values of cells of a VTK image lie between its points", "[vtk]") {
+    const TempFolder folder;
+    const std::string image = "WholeExtent=\"1 3 0 2 0 0\" Origin=\"10 20 30\" Spacing=\"2 3 4\"",
+                      extent = "1 3 0 2 0 0";
+    const Array points{"type=\"UInt8\" Name=\"a\"", "1 2 3 4 5 6 7 8 9", "abcdefghi"},
+        cells{"type=\"Int16\" Name=\"a\"", "1 2 3 -4", bytesOf(std::vector<std::int16_t>{1, 2, 3, -4})},
+        more{"type=\"UInt8\" Name=\"b\" NumberOfComponents=\"2\"", "1 2 3 4 5 6 7 8", "ABCDEFGH"};
+    for (const auto place : {Style::Place::Ascii, Style::Place::Inline, Style::Place::Raw, Style::Place::Base64}) {
+        Style style;
+        style.place = place;
+        const std::string both =
+            folder.write("both.vti", vtiOfPieces(style, {{extent, {points}, {cells, more}}}, "", image));
+        CHECK(contentsOf(sourceOf(both)).arrays == Names{"a", "a (cells)", "b"});
+        CHECK(contentsOf(sourceOf(both)).dims == Int3(3, 3, 1));
+        CHECK(loadVolume(sourceOf(both)).dims() == Int3(3, 3, 1));
+        const Volume volume = loadVolume(sourceOf(both, "a (cells)"));
+        CHECK(volume.dims() == Int3(2, 2, 1));
+        CHECK(samplesOf<std::int16_t>(volume) == std::vector<std::int16_t>{1, 2, 3, -4});
+        // The extent begins at 1, so that the first point is at 12, 20, 30.
+        CHECK(volume.geometry().origin == Vec3(13, 21.5, 30));
+        CHECK(volume.geometry().spacing == Vec3(2, 3, 4));
+        CHECK_THAT(volume.notices.at(0), Contains("those of cells"));
+        VolumeSource second = sourceOf(both, "b");
+        second.component = 1;
+        CHECK(contentsOf(second).dims == Int3(2, 2, 1));
+        CHECK(loadVolume(second).value(3) == (place == Style::Place::Ascii ? 8 : 'H'));
+        const std::string only = folder.write("only.vti", vtiOfPieces(style, {{extent, {}, {cells}}}, "", image));
+        CHECK(contentsOf(sourceOf(only)).array == "a");
+        CHECK(loadVolume(sourceOf(only)).dims() == Int3(2, 2, 1));
+    }
+}
+
+TEST_CASE("cells of an image in pieces come from the piece that has them", "[vtk]") {
+    const TempFolder folder;
+    // Points 0 … 4 along x; pieces share the point 2, no cell.
+    const std::string image = "WholeExtent=\"0 4 0 1 0 1\" Spacing=\"1 1 1\"";
+    const auto piece = [&](const std::string& extent, const std::string& values) {
+        return Piece{extent, {}, {{"type=\"UInt8\" Name=\"c\"", values, ""}}};
+    };
+    const Piece left = piece("0 2 0 1 0 1", "1 2"), right = piece("2 4 0 1 0 1", "3 4"),
+                thin = piece("2 2 0 1 0 1", "");
+    const std::vector<std::uint8_t> all{1, 2, 3, 4};
+    const std::string one = folder.write("one.vti", vtiOfPieces({}, {left, thin, right}, "", image));
+    CHECK(samplesOf<std::uint8_t>(loadVolume(sourceOf(one))) == all);
+    for (const auto& [name, part] : {std::pair{"left.vti", left}, {"right.vti", right}})
+        folder.write(name, vtiOfPieces({}, {part}, "", "WholeExtent=\"" + part.extent + "\""));
+    const auto header = [&](const std::string& rightExtent) {
+        return folder.write("whole.pvti", pvti(image, {}, {{left.extent, "left.vti"}, {rightExtent, "right.vti"}}, "",
+                                               {"type=\"UInt8\" Name=\"c\""}));
+    };
+    const Volume volume = loadVolume(sourceOf(header(right.extent)));
+    CHECK(samplesOf<std::uint8_t>(volume) == all);
+    CHECK(volume.geometry().origin == Vec3(0.5, 0.5, 0.5));
+    VolumeSource part = sourceOf(header(right.extent));
+    part.region = VoxelRegion{{2, 0, 0}, {4, 1, 1}};
+    CHECK(samplesOf<std::uint8_t>(loadVolume(part)) == std::vector<std::uint8_t>{3, 4});
+    CHECK_THAT(errorOf(sourceOf(header("3 4 0 1 0 1"))), Contains("no piece has"));
 }

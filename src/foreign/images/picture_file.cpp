@@ -14,6 +14,7 @@
 #include <zlib.h>
 
 #include "base/text.h"
+#include "volume/formats/content.h"
 #include "volume/formats/file_check.h"
 
 namespace pellucid {

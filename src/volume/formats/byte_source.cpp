@@ -156,6 +156,18 @@ bool FileCharacters::goTo(char character) {
     return false;
 }
 
+bool FileCharacters::skip(std::uint64_t count) {
+    const std::uint64_t left = m_piece.size() - m_at;
+    if (count <= left) {
+        m_at += static_cast<std::size_t>(count);
+        return true;
+    }
+    m_before += m_piece.size() + (count - left);
+    m_piece.clear();
+    m_at = 0;
+    return m_bytes.skip(count - left);
+}
+
 std::size_t HexBytes::read(char* to, std::size_t count) {
     for (std::size_t done = 0; done < count; ++done) {
         int byte = 0;

@@ -101,6 +101,8 @@ public:
     void pass() { ++m_at; }
     /// Goes to the next `character`; false where there is none.
     bool goTo(char character);
+    /// Goes past `count` characters without looking at them; false where reading fails.
+    bool skip(std::uint64_t count);
     std::uint64_t passed() const { return m_before + m_at; } ///< characters, from `start` on
 
 private:

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file_watch.h"
+#include "volume/formats/content.h"
 
 namespace pellucid {
 
@@ -61,84 +62,6 @@ std::string fileHead(const std::string& path, std::size_t limit) {
     return head;
 }
 
-namespace {
-
-bool isTiff(std::string_view head) {
-    using namespace std::string_view_literals;
-    const std::string_view begin = head.substr(0, 4); // the last two are those of large files
-    return begin == "II*\0"sv || begin == "MM\0*"sv || begin == "II+\0"sv || begin == "MM\0+"sv;
-}
-
-/// With a preamble, or as older files without: then three elements of the first groups have to follow each other.
-bool isDicom(std::string_view head) {
-    if (head.size() >= 132 && head.substr(128, 4) == "DICM") return true;
-    const auto number = [&](std::size_t at, std::size_t bytes) {
-        std::size_t value = 0;
-        for (std::size_t i = bytes; i-- > 0;) value = value << 8 | static_cast<unsigned char>(head[at + i]);
-        return value;
-    };
-    const auto isLetter = [&](std::size_t at) { return head[at] >= 'A' && head[at] <= 'Z'; };
-    constexpr std::size_t kElements = 3, kHeader = 12, kMostBytes = 256;
-    std::size_t at = 0, before = 0;
-    for (std::size_t n = 0; n < kElements; ++n) {
-        if (at + kHeader > head.size()) return false;
-        const std::size_t group = number(at, 2), tag = group << 16 | number(at + 2, 2);
-        const bool first = n == 0 && (group == 2 || group == 8) && (tag & 0xffff) <= 0x18;
-        if (n == 0 ? !first : tag <= before || group > 0x10) return false;
-        before = tag;
-        const std::string_view type = head.substr(at + 4, 2);
-        const bool named = isLetter(at + 4) && isLetter(at + 5);
-        const bool wide = type == "OB" || type == "OW" || type == "SQ" || type == "UN" || type == "UT";
-        const std::size_t bytes = !named ? number(at + 4, 4) : wide ? number(at + 8, 4) : number(at + 6, 2);
-        if (bytes > kMostBytes || bytes % 2 != 0) return false;
-        at += bytes + (named && wide ? 12 : 8);
-    }
-    return true;
-}
-
-} // namespace
-
-std::string describeContent(std::string_view head) {
-    using namespace std::string_view_literals;
-    static constexpr std::pair<std::string_view, const char*> kSignatures[] = {
-        {"\x89PNG"sv, "a PNG image"},
-        {"\xff\xd8\xff"sv, "a JPEG image"},
-        {"GIF8"sv, "a GIF image"},
-        {"BM"sv, "a BMP image"},
-        {"%PDF"sv, "a PDF document"},
-        {"\x1f\x8b"sv, "gzip-compressed data"},
-        {"BZh"sv, "bzip2-compressed data"},
-        {"PK\x03\x04"sv, "a ZIP archive"},
-        {"\x89HDF"sv, "an HDF5 file"},
-        {"CDF\x01"sv, "a NetCDF file"},
-        {"CDF\x02"sv, "a NetCDF file"},
-        {"CDF\x05"sv, "a NetCDF file"},
-        {"NRRD000"sv, "an NRRD file"},
-        {"ObjectType"sv, "a MetaImage header"},
-        {"# vtk"sv, "a VTK file"},
-        {"<"sv, "an XML or HTML text"},
-    };
-    for (const auto& [signature, description] : kSignatures)
-        if (head.substr(0, signature.size()) == signature) return description;
-    if (isDicom(head)) return "a DICOM file"; // which may begin like a TIFF image, to be both
-    if (isTiff(head)) return "a TIFF image";
-    const auto looksLikeText = [](char c) {
-        const auto u = static_cast<unsigned char>(c);
-        return u >= 0x20 || u == '\n' || u == '\r' || u == '\t';
-    };
-    return std::all_of(head.begin(), head.end(), looksLikeText) ? "text" : "binary data";
-}
-
-std::string contentOf(const std::string& path) {
-    std::error_code ec;
-    if (!fs::is_regular_file(path, ec)) return {};
-    try {
-        return describeContent(fileHead(path, 1024));
-    } catch (const FileError&) {
-        return {};
-    }
-}
-
 FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head) {
     return {"this is not " + expected + " but " + describeContent(head), path, "give it the suffix of its own format",
             Remedy::GiveRawLayout};
@@ -162,6 +85,14 @@ std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> 
     return count;
 }
 
+void requirePacked(const std::string& where, std::uint64_t bytes, std::uint64_t stored, std::uint64_t most,
+                   const std::string& toDo) {
+    if (stored < bytes / most)
+        throw FileError("the header claims " + describeBytes(bytes) + ", which " + describeBytes(stored) +
+                            " of compressed data cannot hold",
+                        where, toDo);
+}
+
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo) {
     // Deflate turns at most 1032 bytes into one (a match of 258 bytes costs at least two bits); a text needs a digit
@@ -169,11 +100,9 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
     // more than 16 bytes.
     constexpr std::uint64_t kMostDeflate = 1040, kMostBzip2 = 900'000 / 5 * 259 / 16;
     const std::uint64_t bytes = values * bytesPerValue, there = encoding == Encoding::Hex ? stored / 2 : stored;
+    if (encoding == Encoding::Deflate) requirePacked(where, bytes, stored, kMostDeflate, toDo);
+    if (encoding == Encoding::Bzip2) requirePacked(where, bytes, stored, kMostBzip2, toDo);
     std::string problem;
-    if ((encoding == Encoding::Deflate && stored < bytes / kMostDeflate) ||
-        (encoding == Encoding::Bzip2 && stored < bytes / kMostBzip2))
-        problem = "the header claims " + describeBytes(bytes) + ", which " + describeBytes(stored) +
-                  " of compressed data cannot hold";
     if (encoding == Encoding::Text && stored / 2 + 1 < values)
         problem = "the header claims " + std::to_string(values) + " values, which " + describeBytes(stored) +
                   " of text cannot hold";

@@ -29,11 +29,6 @@ std::uint64_t dataFileBytes(const std::string& data, const std::string& header);
 /// Throws UsageError unless `index` is that of one of the `count` things called `what` ("time step") in a file.
 void requireIndex(const std::string& what, int index, std::uint64_t count, const std::string& path);
 
-/// What a file seems to be, for error messages: "a PNG image", "text", "binary data", …
-std::string describeContent(std::string_view head);
-/// The same of a file; empty where it is none, or cannot be read.
-std::string contentOf(const std::string& path);
-
 /// What is wrong with a file that is not `expected` ("an NRRD file"), by its first 1024 bytes.
 FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head);
 
@@ -47,6 +42,10 @@ enum class Encoding { Raw, Deflate, Bzip2, Text, Hex };
 /// the file that holds the data; `toDo` advises what to check.
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo);
+
+/// Throws FileError where `stored` bytes, each of which unpacks to `most` at most, cannot hold `bytes`.
+void requirePacked(const std::string& where, std::uint64_t bytes, std::uint64_t stored, std::uint64_t most,
+                   const std::string& toDo);
 
 /// Unpacks a stream of the file `path` without keeping it. Throws FileError unless it yields `wanted` bytes or more in
 /// members with the right checksum and length. Throws Cancelled.

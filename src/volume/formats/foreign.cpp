@@ -16,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *kDicomContent = "a DICOM file", *kTiffContent = "a TIFF image"; ///< as describeContent() has it
 constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader",
                      *kOfArrays = "pellucid-array-reader";
 

@@ -226,7 +226,8 @@ std::vector<std::string> dataFiles(const std::string& path) { return filesIn(par
 } // namespace
 
 VolumeFormat metaImageFormat() {
-    return {"MetaImage", {".mhd", ".mha"}, describeLayout<layoutOf>, readLayout<layoutOf>, dataFiles};
+    return {"MetaImage",          {".mhd", ".mha"}, describeLayout<layoutOf>,
+            readLayout<layoutOf>, dataFiles,        kMetaImageContent};
 }
 
 } // namespace pellucid

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -157,6 +158,41 @@ std::string dataPathOf(const NiftiHeader& header) {
                     ", is not beside this header",
                 "copy both into one folder");
 }
+
+/// A name whose suffix `from`, before that of gzip, is replaced by `to`, in the case of the letters that are there;
+/// empty where it has another suffix.
+std::string withSuffix(const std::string& path, const std::string& from, const std::string& to) {
+    std::string stem = path;
+    for (const std::string_view packed : {".gz", ".GZ"})
+        if (stem.ends_with(packed)) stem.resize(stem.size() - packed.size());
+    if (lowerCase(stem).size() <= from.size() || !lowerCase(stem).ends_with(from)) return {};
+    const bool upper = !stem.ends_with(from);
+    stem.resize(stem.size() - from.size());
+    std::string suffix = to;
+    if (upper) std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::toupper(c); });
+    return stem + suffix;
+}
+
+/// The header of a pair beside its *.img; empty where there is none.
+std::string headerBeside(const std::string& image) {
+    const std::string header = withSuffix(image, ".img", ".hdr");
+    if (header.empty()) return {};
+    std::error_code ec;
+    for (const std::string& path : {header, header + ".gz", header + ".GZ"}) {
+        if (!std::filesystem::is_regular_file(path, ec)) continue;
+        const std::vector<unsigned char> bytes = headerBytes(path);
+        if (beginsLikeNifti({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) return path;
+    }
+    return {};
+}
+
+/// The file with the header: the one that is opened, or the one beside it.
+std::string headerPathOf(const std::string& opened) {
+    const std::string beside = headerBeside(opened);
+    return beside.empty() ? opened : beside;
+}
+
+bool isOfPair(const std::string& path) { return !headerBeside(path).empty(); }
 
 struct NiftiType {
     std::int64_t components; ///< of one voxel, beside each other
@@ -322,7 +358,7 @@ std::optional<StepTimes> timesIn(const NiftiHeader& header) {
 }
 
 FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const JobControl& job) {
-    const std::string& path = source.path;
+    const std::string path = headerPathOf(source.path);
     readableFileBytes(path);
     const NiftiHeader header(path);
     const NiftiType type = typeIn(header);
@@ -357,14 +393,23 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
 }
 
 std::vector<std::string> dataFiles(const std::string& path) {
-    const NiftiHeader header(path);
+    const std::string headerPath = headerPathOf(path);
+    const NiftiHeader header(headerPath);
+    if (headerPath != path) return {headerPath};
     return header.isPair() ? std::vector<std::string>{dataPathOf(header)} : std::vector<std::string>{};
 }
 
 } // namespace
 
 VolumeFormat niftiFormat() {
-    return {"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz"}, describeLayout<layoutOf>, readLayout<layoutOf>, dataFiles};
+    return {"NIfTI",
+            {".nii", ".nii.gz", ".hdr", ".hdr.gz"},
+            describeLayout<layoutOf>,
+            readLayout<layoutOf>,
+            dataFiles,
+            kNiftiContent,
+            {".img", ".img.gz"},
+            isOfPair};
 }
 
 } // namespace pellucid

@@ -410,7 +410,7 @@ std::vector<std::string> dataFiles(const std::string& path) { return filesIn(par
 } // namespace
 
 VolumeFormat nrrdFormat() {
-    return {"NRRD", {".nrrd", ".nhdr"}, describeLayout<layoutOf>, readLayout<layoutOf>, dataFiles};
+    return {"NRRD", {".nrrd", ".nhdr"}, describeLayout<layoutOf>, readLayout<layoutOf>, dataFiles, kNrrdContent};
 }
 
 } // namespace pellucid

@@ -1,9 +1,11 @@
-// The file formats, each in a file of its own; loader.cpp chooses among them by suffix.
+// The file formats, each in a file of its own; loader.cpp chooses among them by content, and by suffix where that does
+// not tell.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "volume/formats/content.h"
 #include "volume/formats/samples.h"
 
 namespace pellucid {
@@ -21,7 +23,10 @@ struct VolumeFormat {
     Volume (*read)(const VolumeSource& source, const JobControl& job);
     /// The files that hold the samples, where the header names others. Throws FileError. Null: they are in the file.
     std::vector<std::string> (*dataFiles)(const std::string& path) = nullptr;
-    const char* content = nullptr; ///< describeContent() of its files, where that tells the format under any name
+    const char* content = nullptr; ///< describeContent() of its files: that tells the format under any name
+    std::vector<std::string> sharedSuffixes = {}; ///< other files have these, too: they do not tell the format
+    /// Whether a file of such a suffix belongs to a file of this format that is beside it. Null: none does.
+    bool (*isBeside)(const std::string& path) = nullptr;
 };
 
 /// The `describe` and `read` of a format whose header becomes a layout: layoutOf(source, step, job), where `step` is
@@ -38,9 +43,13 @@ Volume readLayout(const VolumeSource& source, const JobControl& job) {
 VolumeFormat nrrdFormat();
 VolumeFormat metaImageFormat();
 VolumeFormat niftiFormat();
-VolumeFormat vtiFormat();   ///< vtk_image.cpp
-VolumeFormat pvtiFormat();  ///< vtk_image.cpp
-VolumeFormat pvdFormat();   ///< vtk_collection.cpp
+VolumeFormat vtiFormat();  ///< vtk_image.cpp
+VolumeFormat pvtiFormat(); ///< vtk_image.cpp
+VolumeFormat pvdFormat();  ///< vtk_collection.cpp
+VolumeFormat vtkLegacyFormat();
+VolumeFormat pvmFormat();
+VolumeFormat datFormat();
+VolumeFormat vvdFormat();
 VolumeFormat dicomFormat(); ///< foreign.cpp
 VolumeFormat imageFormat(); ///< foreign.cpp
 VolumeFormat zarrFormat();  ///< foreign.cpp; of folders only

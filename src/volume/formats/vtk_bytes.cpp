@@ -5,7 +5,6 @@
 #include <cctype>
 #include <utility>
 
-#include "base/check.h"
 #include "volume/formats/file_check.h"
 
 namespace pellucid {
@@ -25,8 +24,8 @@ int base64Digit(int c) {
 
 /// What the header says.
 struct Header {
-    std::uint64_t bytes = 0;               ///< of the data, unpacked
-    std::vector<ZlibBlocks::Block> blocks; ///< of compressed data
+    std::uint64_t bytes = 0;         ///< of the data, unpacked
+    std::vector<PackedBlock> blocks; ///< of packed data
 };
 
 /// Reads it from `from`, whose next byte is then the first of the data. `stored`: bytes of the file from there on.
@@ -44,7 +43,7 @@ Header readHeader(ByteSource& from, const VtkData& data, std::uint64_t stored) {
         return value;
     };
     Header header;
-    if (!data.compressed) {
+    if (data.packing == VtkPacking::None) {
         header.bytes = number();
         return header;
     }
@@ -114,70 +113,64 @@ std::size_t Base64Bytes::read(char* to, std::size_t count) {
     return done;
 }
 
-ZlibBlocks::ZlibBlocks(std::unique_ptr<ByteSource> from, std::vector<Block> blocks)
-    : m_from(std::move(from)), m_blocks(std::move(blocks)), m_packed(kPiece) {
-    PELLUCID_CHECK(inflateInit(&m_stream) == Z_OK);
-    beginBlock();
+PackedBlocks::PackedBlocks(std::unique_ptr<ByteSource> from, VtkPacking packing, std::vector<PackedBlock> blocks)
+    : m_from(std::move(from)), m_codec(BlockCodec::of(packing)), m_blocks(std::move(blocks)), m_packed(kPiece) {
+    m_failed = !m_blocks.empty() && !beginBlock();
 }
 
-ZlibBlocks::~ZlibBlocks() { inflateEnd(&m_stream); }
-
 /// More of the packed block; false where there is none.
-bool ZlibBlocks::fill() {
+bool PackedBlocks::fill() {
     const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(m_packedLeft, m_packed.size()));
     const std::size_t read = m_from->read(reinterpret_cast<char*>(m_packed.data()), piece);
     m_packedLeft -= read;
-    m_stream.next_in = m_packed.data();
-    m_stream.avail_in = static_cast<uInt>(read);
+    m_in = {m_packed.data(), read};
     return read > 0;
 }
 
-/// False where there is none.
-bool ZlibBlocks::beginBlock() {
+/// False where there is none, or it is not to be unpacked.
+bool PackedBlocks::beginBlock() {
     if (m_block == m_blocks.size()) return false;
     m_packedLeft = m_blocks[m_block].packed;
     m_unpackedLeft = m_blocks[m_block].unpacked;
-    m_stream.avail_in = 0;
-    m_streamEnded = false;
-    return inflateReset(&m_stream) == Z_OK;
+    m_in = {};
+    m_ended = false;
+    return m_codec->begin(m_blocks[m_block]);
+}
+
+/// Goes on with the block, by more of the file where that is needed; false where it is damaged or there is no more.
+bool PackedBlocks::step(BlockCodec::Output& out) {
+    const std::size_t input = m_in.left, output = out.left;
+    const BlockCodec::State state = m_codec->decode(m_in, out);
+    m_ended = state == BlockCodec::State::Ended;
+    if (state == BlockCodec::State::Damaged) return false;
+    const bool hasMoved = m_in.left < input || out.left < output;
+    return m_ended || hasMoved || (m_in.left == 0 && fill());
 }
 
 /// All of the block has come out: what is left of it is its checksum, which has to be right. Begins the next one.
-bool ZlibBlocks::endBlock() {
-    while (!m_streamEnded) {
-        if (m_stream.avail_in == 0 && !fill()) return false;
+bool PackedBlocks::endBlock() {
+    while (!m_ended) {
         unsigned char more = 0;
-        m_stream.next_out = &more;
-        m_stream.avail_out = 1;
-        const int status = inflate(&m_stream, Z_NO_FLUSH);
-        if ((status != Z_OK && status != Z_STREAM_END) || m_stream.avail_out == 0) return false;
-        m_streamEnded = status == Z_STREAM_END;
+        BlockCodec::Output out{&more, 1};
+        if (!step(out) || out.left == 0) return false;
     }
     if (!m_from->skip(m_packedLeft)) return false;
     ++m_block;
     return beginBlock();
 }
 
-std::size_t ZlibBlocks::read(char* to, std::size_t count) {
+std::size_t PackedBlocks::read(char* to, std::size_t count) {
     std::size_t done = 0;
     while (done < count && !m_failed && m_block < m_blocks.size()) {
         if (m_unpackedLeft == 0) {
             m_failed = !endBlock();
             continue;
         }
-        if (m_streamEnded || (m_stream.avail_in == 0 && !fill())) {
-            m_failed = true;
-            break;
-        }
-        const auto piece =
-            static_cast<std::size_t>(std::min<std::uint64_t>({count - done, m_unpackedLeft, std::uint64_t{1} << 30}));
-        m_stream.next_out = reinterpret_cast<Bytef*>(to + done);
-        m_stream.avail_out = static_cast<uInt>(piece);
-        const int status = inflate(&m_stream, Z_NO_FLUSH);
-        m_failed = status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR;
-        m_streamEnded = status == Z_STREAM_END;
-        done += piece - m_stream.avail_out;
-        m_unpackedLeft -= piece - m_stream.avail_out;
+        const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(count - done, m_unpackedLeft));
+        BlockCodec::Output out{reinterpret_cast<unsigned char*>(to + done), piece};
+        m_failed = m_ended || !step(out);
+        done += piece - out.left;
+        m_unpackedLeft -= piece - out.left;
     }
     // The last block's checksum is looked at with its last byte.
     if (!m_failed && m_unpackedLeft == 0 && m_block + 1 == m_blocks.size())
@@ -186,7 +179,7 @@ std::size_t ZlibBlocks::read(char* to, std::size_t count) {
     return m_failed && done == count && count > 0 ? count - 1 : done;
 }
 
-bool ZlibBlocks::skip(std::uint64_t count) {
+bool PackedBlocks::skip(std::uint64_t count) {
     while (count > 0 && !m_failed && m_block < m_blocks.size()) {
         const bool isAtBegin = m_unpackedLeft == m_blocks[m_block].unpacked;
         if (isAtBegin && count >= m_unpackedLeft) {
@@ -204,6 +197,18 @@ bool ZlibBlocks::skip(std::uint64_t count) {
     return count == 0;
 }
 
+namespace {
+
+void requireBlocks(const VtkData& data, const std::vector<PackedBlock>& blocks) {
+    if (data.packing != VtkPacking::Lz4) return;
+    for (const PackedBlock& block : blocks)
+        if (block.unpacked > kMostLz4Block)
+            throw FileError("a compressed block of the array has " + describeBytes(block.unpacked), data.path,
+                            "write the file with blocks of " + describeBytes(kMostLz4Block) + " at most");
+}
+
+} // namespace
+
 std::uint64_t requireVtkBytes(const VtkData& data, const JobControl& job) {
     const std::uint64_t bytes = data.bytes, stored = storedFrom(data);
     auto from = encodedBytes(data, job);
@@ -212,13 +217,17 @@ std::uint64_t requireVtkBytes(const VtkData& data, const JobControl& job) {
         throw FileError("the array has " + std::to_string(header.bytes) + " bytes, but its extent and type need " +
                             std::to_string(bytes),
                         data.path, kCheckArray);
-    if (!data.base64 && !data.compressed) {
+    const bool isPacked = data.packing != VtkPacking::None;
+    if (!data.base64 && !isPacked) {
         const auto before = static_cast<std::uint64_t>(data.headerBytes);
         requireStored(data.path, Encoding::Raw, bytes, 1, stored - before, kCheckArray);
         return data.start + before;
     }
-    requireStored(data.path, data.compressed ? Encoding::Deflate : Encoding::Raw, bytes, 1,
-                  data.compressed ? stored : stored / 4 * 3 + 3, kCheckArray);
+    if (isPacked)
+        requirePacked(data.path, bytes, stored, BlockCodec::mostPerByte(data.packing), kCheckArray);
+    else
+        requireStored(data.path, Encoding::Raw, bytes, 1, stored / 4 * 3 + 3, kCheckArray);
+    requireBlocks(data, header.blocks);
     // Unpacked once without keeping it: nothing is allocated for what is not there.
     const auto unpacked = openVtkData(data, job);
     std::vector<char> piece(1u << 18);
@@ -239,8 +248,8 @@ std::uint64_t requireVtkBytes(const VtkData& data, const JobControl& job) {
 std::unique_ptr<ByteSource> openVtkData(const VtkData& data, const JobControl& job) {
     auto from = encodedBytes(data, job);
     Header header = readHeader(*from, data, storedFrom(data));
-    if (!data.compressed) return from;
-    return std::make_unique<ZlibBlocks>(std::move(from), std::move(header.blocks));
+    if (data.packing == VtkPacking::None) return from;
+    return std::make_unique<PackedBlocks>(std::move(from), data.packing, std::move(header.blocks));
 }
 
 } // namespace pellucid

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "volume/formats/block_codec.h"
 #include "volume/formats/byte_source.h"
 
 namespace pellucid {
@@ -26,16 +27,10 @@ private:
     std::size_t m_readyAt = 0;
 };
 
-/// Zlib streams one after the other, each of a known size packed and unpacked.
-class ZlibBlocks final : public ByteSource {
+/// Packed blocks one after the other, each of a known size packed and unpacked.
+class PackedBlocks final : public ByteSource {
 public:
-    struct Block {
-        std::uint64_t packed, unpacked; ///< bytes
-    };
-    ZlibBlocks(std::unique_ptr<ByteSource> from, std::vector<Block> blocks);
-    ~ZlibBlocks() override;
-    ZlibBlocks(const ZlibBlocks&) = delete;
-    ZlibBlocks& operator=(const ZlibBlocks&) = delete;
+    PackedBlocks(std::unique_ptr<ByteSource> from, VtkPacking packing, std::vector<PackedBlock> blocks);
     /// Fewer bytes where a block is damaged or yields another number of bytes than it should.
     std::size_t read(char* to, std::size_t count) override;
     /// Does not unpack the blocks that it leaves out as a whole, nor look whether they are damaged.
@@ -45,20 +40,24 @@ private:
     bool beginBlock();
     bool endBlock();
     bool fill();
+    bool step(BlockCodec::Output& out);
     std::unique_ptr<ByteSource> m_from;
-    std::vector<Block> m_blocks;
+    std::unique_ptr<BlockCodec> m_codec;
+    std::vector<PackedBlock> m_blocks;
     std::size_t m_block = 0; // that is being unpacked
     std::uint64_t m_packedLeft = 0, m_unpackedLeft = 0;
-    z_stream m_stream{};
     std::vector<unsigned char> m_packed;
-    bool m_streamEnded = true, m_failed = false;
+    BlockCodec::Input m_in; // what is left of m_packed
+    bool m_ended = true, m_failed = false;
 };
 
 /// Where the data of one array begin, with their header, and how they are stored.
 struct VtkData {
     std::string path;
     std::uint64_t start = 0; ///< byte of the file
-    bool base64 = false, compressed = false, bigEndian = false;
+    bool base64 = false;
+    VtkPacking packing = VtkPacking::None;
+    bool bigEndian = false;
     int headerBytes = 4;     ///< of a number in the header: 4 or 8
     std::uint64_t bytes = 0; ///< that the array needs, unpacked
 };

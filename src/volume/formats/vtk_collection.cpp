@@ -108,7 +108,7 @@ Volume readFromCollection(const VolumeSource& source, const JobControl& job) {
 } // namespace
 
 VolumeFormat pvdFormat() {
-    return {"VTK collection", {".pvd"}, describeCollection, readFromCollection, filesOfCollection};
+    return {"VTK collection", {".pvd"}, describeCollection, readFromCollection, filesOfCollection, kPvdContent};
 }
 
 } // namespace pellucid

@@ -5,6 +5,9 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <set>
+#include <span>
 
 #include <glm/common.hpp>
 
@@ -52,13 +55,14 @@ std::uint64_t appendedStart(const std::string& path, std::uint64_t from, const J
     return from + text.passed() + 1;
 }
 
-VtkArray arrayOf(const XmlTag& tag, const std::string& path) {
+VtkArray arrayOf(const XmlTag& tag, const std::string& path, bool ofCells = false) {
     VtkArray array{tag.get("Name"),
                    tag.get("type"),
                    lowerCase(tag.get("format")),
                    wholeNumber(tag, "NumberOfComponents", 1, path),
                    tag.end,
                    0};
+    array.ofCells = ofCells;
     const std::int64_t offset = wholeNumber(tag, "offset", 0, path);
     if (offset < 0) failInVtk(path, "the offset of an array is negative");
     array.offset = static_cast<std::uint64_t>(offset);
@@ -91,12 +95,17 @@ void readRoot(VtkImage& image, const XmlTag& tag) {
         failInVtk(image.path, "the byte order " + inQuotes(order) + " is not known");
     if (!header.empty() && header != "UInt32" && header != "UInt64")
         failInVtk(image.path, "the header type " + inQuotes(header) + " is not known");
-    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+    static const std::map<std::string, VtkPacking> kPackings{{"", VtkPacking::None},
+                                                             {"vtkZLibDataCompressor", VtkPacking::ZLib},
+                                                             {"vtkLZ4DataCompressor", VtkPacking::Lz4},
+                                                             {"vtkLZMADataCompressor", VtkPacking::Lzma}};
+    const auto packing = kPackings.find(compressor);
+    if (packing == kPackings.end())
         failInVtk(image.path, "the compressor " + inQuotes(compressor) + " is not supported",
-                  "write it with ZLib compression, or none");
+                  "write it with ZLib, LZ4 or LZMA compression, or none");
     image.bigEndian = order == "BigEndian";
     image.headerBytes = header == "UInt64" ? 8 : 4;
-    image.compressed = !compressor.empty();
+    image.packing = packing->second;
 }
 
 /// What an element within `parent` says of the image; most say nothing.
@@ -115,11 +124,9 @@ void readElement(VtkImage& image, const XmlTag& tag, const std::string& parent, 
         image.pieces.push_back(pieceOf(tag, image));
     } else if (tag.name == p + "PointData" && parent == (image.piecesInFiles ? "PImageData" : "Piece")) {
         arrays.active = tag.get("Scalars");
-    } else if (tag.name == p + "DataArray" && parent == p + "PointData") {
+    } else if (tag.name == p + "DataArray" && (parent == p + "PointData" || parent == p + "CellData")) {
         if (arrays.all.size() >= kMostArrays) failInVtk(path, "there are too many arrays");
-        arrays.all.push_back(arrayOf(tag, path));
-    } else if (tag.name == p + "DataArray" && parent == p + "CellData") {
-        ++image.cellArrays;
+        arrays.all.push_back(arrayOf(tag, path, parent == p + "CellData"));
     } else if (tag.name == "DataArray" && parent == "FieldData" && tag.get("Name") == "TimeValue") {
         image.time = arrayOf(tag, path);
     } else if (tag.name == "AppendedData" && parent == "VTKFile") {
@@ -178,6 +185,19 @@ void failInVtk(const std::string& path, const std::string& what, const std::stri
     throw FileError(what, path, toDo);
 }
 
+std::vector<std::string> VtkArrays::names() const {
+    std::vector<std::string> ofPoints, ofCells;
+    for (const VtkArray& array : all) (array.ofCells ? ofCells : ofPoints).push_back(array.name);
+    return offeredNames(ofPoints, ofCells);
+}
+
+VtkExtent cellsOf(const VtkExtent& part, const VtkExtent& whole) {
+    VtkExtent cells = part;
+    for (int a = 0; a < 3; ++a)
+        if (whole.hi[a] - whole.lo[a] > 1) --cells.hi[a];
+    return cells;
+}
+
 VtkExtent common(const VtkExtent& a, const VtkExtent& b) { return {glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)}; }
 
 std::string textOf(const VtkExtent& extent) {
@@ -185,6 +205,26 @@ std::string textOf(const VtkExtent& extent) {
     for (int a = 0; a < 3; ++a)
         text += (a == 0 ? "" : " ") + std::to_string(extent.lo[a]) + " " + std::to_string(extent.hi[a] - 1);
     return text;
+}
+
+std::vector<std::string> offeredNames(const std::vector<std::string>& ofPoints,
+                                      const std::vector<std::string>& ofCells) {
+    std::vector<std::string> names = ofPoints;
+    const std::set<std::string> known(ofPoints.begin(), ofPoints.end());
+    for (const std::string& name : ofCells) names.push_back(known.contains(name) ? name + " (cells)" : name);
+    return names;
+}
+
+std::size_t chosenOf(const std::vector<std::string>& offered, const std::string& asked, const std::string& active,
+                     const std::string& path) {
+    const auto found = std::ranges::find(offered, asked.empty() ? active : asked);
+    if (!asked.empty() && found == offered.end()) {
+        const auto shown = std::span(offered).first(std::min<std::size_t>(offered.size(), 20));
+        throw UsageError("there is no array " + inQuotes(asked), path,
+                         "it has " + joined(shown, ", ", [](const std::string& name) { return name.substr(0, 40); }));
+    }
+    const bool isNamed = !asked.empty() || !active.empty();
+    return isNamed && found != offered.end() ? static_cast<std::size_t>(found - offered.begin()) : 0;
 }
 
 void checkIsXml(const std::string& path) {
@@ -222,6 +262,7 @@ VtkImage readVtkImage(const std::string& path, bool piecesInFiles, const JobCont
     const auto first =
         std::ranges::find_if(image.pieces, [](const VtkPiece& piece) { return !piece.arrays.all.empty(); });
     if (first != image.pieces.end()) image.arrays = first->arrays;
+    std::ranges::stable_partition(image.arrays.all, [](const VtkArray& array) { return !array.ofCells; });
     return image;
 }
 

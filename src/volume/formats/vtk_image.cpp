@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <span>
 
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
@@ -56,7 +55,7 @@ StoredValues dataOf(const VtkImage& file, const VtkArray& array, std::uint64_t v
         requireNumbers(path, stored.start, values, job);
         return stored;
     }
-    VtkData data{path, array.contentStart, true, file.compressed, file.bigEndian, file.headerBytes, values * bytesPer};
+    VtkData data{path, array.contentStart, true, file.packing, file.bigEndian, file.headerBytes, values * bytesPer};
     if (array.format == "appended") {
         if (!file.appendedStart) failInVtk(path, "there are no appended data in the file", "copy it again");
         if (array.offset > (std::uint64_t{1} << 62)) failInVtk(path, "the offset of an array lies beyond any file");
@@ -66,28 +65,9 @@ StoredValues dataOf(const VtkImage& file, const VtkArray& array, std::uint64_t v
         failInVtk(path, "the format " + inQuotes(array.format) + " of the array is not known");
     }
     stored.start = requireVtkBytes(data, job);
-    if (data.base64 || data.compressed)
+    if (data.base64 || data.packing != VtkPacking::None)
         stored.open = [data](const JobControl& control) { return openVtkData(data, control); };
     return stored;
-}
-
-/// The array that is asked for.
-const VtkArray& chosenArray(const VtkImage& image, const std::string& name) {
-    const std::vector<VtkArray>& arrays = image.arrays.all;
-    if (arrays.empty()) {
-        if (image.cellArrays > 0)
-            failInVtk(image.path, "the file has values for cells, not for points",
-                      "convert its cell data to point data");
-        failInVtk(image.path, "the file has no values for points");
-    }
-    const auto found = std::ranges::find(arrays, name.empty() ? image.arrays.active : name, &VtkArray::name);
-    if (!name.empty() && found == arrays.end()) {
-        const auto shown = std::span(arrays).first(std::min<std::size_t>(arrays.size(), 20));
-        const auto nameOf = [](const VtkArray& array) { return array.name.substr(0, 40); };
-        throw UsageError("there is no array " + inQuotes(name), image.path, "it has " + joined(shown, ", ", nameOf));
-    }
-    const bool isNamed = !name.empty() || !image.arrays.active.empty();
-    return isNamed && found != arrays.end() ? *found : arrays.front();
 }
 
 /// The array of piece `n` of `file` that is part of `whole`, an array of the image.
@@ -96,7 +76,8 @@ const VtkArray& arrayOfPiece(const VtkImage& file, std::size_t n, const VtkArray
                                   ? "the piece"
                                   : "piece " + std::to_string(n + 1) + " of " + std::to_string(file.pieces.size());
     const std::vector<VtkArray>& arrays = file.pieces[n].arrays.all;
-    const auto found = std::ranges::find(arrays, whole.name, &VtkArray::name);
+    const auto found = std::ranges::find_if(
+        arrays, [&](const VtkArray& array) { return array.name == whole.name && array.ofCells == whole.ofCells; });
     if (found == arrays.end())
         failInVtk(file.path, piece + " has no array " + inQuotes(whole.name), "write it with the arrays of the others");
     if (found->type != whole.type)
@@ -132,21 +113,29 @@ void addPieces(FileLayout& layout, const VtkImage& file, const VtkArray& array, 
     }
 }
 
-/// The file of a piece of `image`.
-VtkImage readPiece(const VtkImage& image, const VtkPiece& piece, const JobControl& job) {
+/// Makes the extents of pieces of `file` those of their cells; `whole`: the points of the image.
+void countCells(VtkImage& file, const VtkExtent& whole) {
+    for (VtkPiece& piece : file.pieces) piece.extent = cellsOf(piece.extent, whole);
+    std::erase_if(file.pieces, [](const VtkPiece& piece) { return piece.extent.isEmpty(); });
+}
+
+/// The file of a piece of `image`, whose extents are those of cells of `cellsIn` where that is given.
+VtkImage readPiece(const VtkImage& image, const VtkPiece& piece, const std::optional<VtkExtent>& cellsIn,
+                   const JobControl& job) {
     const std::string header = inQuotes(fs::path(image.path).filename().string());
     std::error_code ec;
     if (fs::status(piece.path, ec).type() == fs::file_type::not_found)
         failInVtk(piece.path, "this file is missing, a piece of " + header, "put it there, or write the image again");
     if (readableFileBytes(piece.path) == 0) failInVtk(piece.path, "the file is empty", "copy it again");
     VtkImage file = readVtkImage(piece.path, false, job);
+    if (cellsIn) countCells(file, *cellsIn);
     requireCovered(file, piece.extent, "correct the extent that " + header + " gives, or write the image again", job);
     return file;
 }
 
 /// The values of `region`; of the whole image where it is empty. Files of pieces outside are not looked at.
-void placeValues(FileLayout& layout, VtkImage& image, const VtkArray& array, const std::optional<VoxelRegion>& region,
-                 const JobControl& job) {
+void placeValues(FileLayout& layout, VtkImage& image, const VtkArray& array, const std::optional<VtkExtent>& cellsIn,
+                 const std::optional<VoxelRegion>& region, const JobControl& job) {
     using Points = glm::vec<3, std::int64_t>;
     const VtkExtent whole = *image.extent;
     const VtkExtent asked = region ? VtkExtent{whole.lo + Points(region->lo), whole.lo + Points(region->hi)} : whole;
@@ -154,7 +143,7 @@ void placeValues(FileLayout& layout, VtkImage& image, const VtkArray& array, con
         for (const VtkPiece& piece : image.pieces) {
             const VtkExtent wanted = common(piece.extent, asked);
             if (wanted.isEmpty()) continue;
-            const VtkImage file = readPiece(image, piece, job);
+            const VtkImage file = readPiece(image, piece, cellsIn, job);
             addPieces(layout, file, array, wanted, whole, job);
             if (image.direction.empty()) image.direction = file.direction; // some writers leave it to the pieces
         }
@@ -182,6 +171,14 @@ void placeGrid(FileLayout& layout, const VtkImage& image) {
     layout.origin += layout.directions * first; // the extent need not begin at 0
 }
 
+/// Moves the origin from the first point to the middle of the first cell.
+void moveToCells(FileLayout& layout, const VtkExtent& points) {
+    Vec3 half(0);
+    for (int a = 0; a < 3; ++a)
+        if (points.hi[a] - points.lo[a] > 1) half[a] = layout.spacing[a] / 2;
+    layout.origin += layout.directions * half;
+}
+
 /// The one value of TimeValue; none where it cannot be read.
 std::optional<double> timeOf(const VtkImage& image, const JobControl& job) {
     if (!image.time || image.time->components != 1) return {};
@@ -201,23 +198,34 @@ std::optional<double> timeOf(const VtkImage& image, const JobControl& job) {
 template <bool piecesInFiles>
 FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const JobControl& job) {
     VtkImage image = readVtkImage(source.path, piecesInFiles, job);
-    const VtkArray array = chosenArray(image, source.array);
+    const std::vector<std::string> names = image.arrays.names();
+    if (names.empty()) failInVtk(image.path, "the file has no values for points, nor for cells");
+    const std::size_t chosen = chosenOf(names, source.array, image.arrays.active, source.path);
+    const VtkArray array = image.arrays.all[chosen];
+    std::optional<VtkExtent> cellsIn; // of so many points, where the array is one of cells
+    if (array.ofCells) {
+        cellsIn = image.extent;
+        countCells(image, *cellsIn);
+        image.extent = cellsOf(*cellsIn, *cellsIn);
+    }
     requireCovered(image, *image.extent, "write the image again, with all of its pieces", job);
     FileLayout layout;
     layout.dataPath = source.path;
-    layout.array = array.name;
+    layout.array = names[chosen];
     layout.type = typeOf(array, source.path);
     if (array.components != 1) layout.axes.push_back({array.components, true});
     const auto size = image.extent->hi - image.extent->lo;
     for (int a = 0; a < 3; ++a) layout.axes.push_back({size[a]});
     valuesIn(layout, source.path); // so many that they can be counted
-    if (step) placeValues(layout, image, array, source.region, job);
+    if (step) placeValues(layout, image, array, cellsIn, source.region, job);
     placeGrid(layout, image);
-    if (image.arrays.all.size() > 1 && source.array.empty())
-        layout.notices.push_back("array " + inQuotes(array.name) + " of " + std::to_string(image.arrays.all.size()) +
+    if (cellsIn) moveToCells(layout, *cellsIn);
+    if (names.size() > 1 && source.array.empty())
+        layout.notices.push_back("array " + inQuotes(layout.array) + " of " + std::to_string(names.size()) +
                                  " is shown");
+    if (cellsIn) layout.notices.emplace_back(kCellsNotice);
     if (step) return layout;
-    for (const VtkArray& other : image.arrays.all) layout.arrays.push_back(other.name);
+    layout.arrays = names;
     if (const auto time = timeOf(image, job)) layout.times = StepTimes{*time, 1, ""};
     return layout;
 }
@@ -231,15 +239,13 @@ std::vector<std::string> filesOfPieces(const std::string& path) {
 } // namespace
 
 VolumeFormat vtiFormat() {
-    return {"VTK image data", {".vti"}, describeLayout<layoutOf<false>>, readLayout<layoutOf<false>>};
+    return {"VTK image data", {".vti"},   describeLayout<layoutOf<false>>, readLayout<layoutOf<false>>,
+            nullptr,          kVtiContent};
 }
 
 VolumeFormat pvtiFormat() {
-    return {"VTK image data in pieces",
-            {".pvti"},
-            describeLayout<layoutOf<true>>,
-            readLayout<layoutOf<true>>,
-            filesOfPieces};
+    return {"VTK image data in pieces", {".pvti"},     describeLayout<layoutOf<true>>,
+            readLayout<layoutOf<true>>, filesOfPieces, kPvtiContent};
 }
 
 } // namespace pellucid
