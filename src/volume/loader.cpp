@@ -18,7 +18,8 @@ constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
     static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
-                                                    pvtiFormat(), pvdFormat(),       imageFormat(), dicomFormat()};
+                                                    pvtiFormat(), pvdFormat(),       imageFormat(), dicomFormat(),
+                                                    hdf5Format(), netCdfFormat()};
     return kFormats;
 }
 

@@ -110,6 +110,7 @@ std::string describeContent(std::string_view head) {
         {"BZh"sv, "bzip2-compressed data"},
         {"PK\x03\x04"sv, "a ZIP archive"},
         {"\x89HDF"sv, "an HDF5 file"},
+        {"\x0e\x03\x13\x01"sv, "an HDF4 file"},
         {"CDF\x01"sv, "a NetCDF file"},
         {"CDF\x02"sv, "a NetCDF file"},
         {"CDF\x05"sv, "a NetCDF file"},
@@ -122,6 +123,7 @@ std::string describeContent(std::string_view head) {
         if (head.substr(0, signature.size()) == signature) return description;
     if (isDicom(head)) return "a DICOM file"; // which may begin like a TIFF image, to be both
     if (isTiff(head)) return "a TIFF image";
+    if (head.size() > 512 && head.substr(512).starts_with("\x89HDF\r\n")) return "an HDF5 file"; // MATLAB 7.3
     const auto looksLikeText = [](char c) {
         const auto u = static_cast<unsigned char>(c);
         return u >= 0x20 || u == '\n' || u == '\r' || u == '\t';

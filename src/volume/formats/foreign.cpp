@@ -1,5 +1,5 @@
 // Formats that are read by libraries, in processes of their own (src/foreign, app/reader): DICOM by GDCM, pictures as
-// slices by OpenImageIO.
+// slices by OpenImageIO, arrays in HDF5 and NetCDF by libhdf5.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -16,8 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *kDicomContent = "a DICOM file", *kTiffContent = "a TIFF image"; ///< as describeContent() has it
-constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader";
+/// As describeContent() has it.
+constexpr const char *kDicomContent = "a DICOM file", *kTiffContent = "a TIFF image", *kHdf5Content = "an HDF5 file",
+                     *kNetCdfContent = "a NetCDF file";
+constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader",
+                     *kOfArrays = "pellucid-array-reader";
 
 ReaderRequest requestOf(const VolumeSource& source, const char* program) {
     ReaderRequest request;
@@ -42,6 +45,13 @@ ReaderRequest imageRequest(const VolumeSource& source) {
         if (describeContent(head) != kTiffContent) throw notOfFormat("a TIFF image", source.path, head);
     }
     return requestOf(source, kOfImages);
+}
+/// HDF5 may stand behind anything: the reader tells what is none.
+ReaderRequest arrayRequest(const VolumeSource& source) {
+    if (volumeSuffix(source.path) == ".mat" && fileHead(source.path, 10) == "MATLAB 5.0")
+        throw FileError("MATLAB's files are read from version 7.3 on, this is an older one", source.path,
+                        "save it in MATLAB by save(…, '-v7.3')");
+    return requestOf(source, kOfArrays);
 }
 
 template <auto requestFor>
@@ -141,6 +151,24 @@ VolumeFormat dicomFormat() {
 VolumeFormat imageFormat() {
     return {"pictures",         {".tif", ".tiff"},       describe<imageRequest>,
             read<imageRequest>, dataFiles<imageRequest>, kTiffContent};
+}
+
+VolumeFormat hdf5Format() {
+    return {"HDF5",
+            {".h5", ".hdf5", ".hdf", ".he5", ".mat"},
+            describe<arrayRequest>,
+            read<arrayRequest>,
+            dataFiles<arrayRequest>,
+            kHdf5Content};
+}
+
+VolumeFormat netCdfFormat() {
+    return {"NetCDF",
+            {".nc", ".nc4", ".cdf", ".netcdf"},
+            describe<arrayRequest>,
+            read<arrayRequest>,
+            dataFiles<arrayRequest>,
+            kNetCdfContent};
 }
 
 } // namespace pellucid

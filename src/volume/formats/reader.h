@@ -38,11 +38,13 @@ Volume readLayout(const VolumeSource& source, const JobControl& job) {
 VolumeFormat nrrdFormat();
 VolumeFormat metaImageFormat();
 VolumeFormat niftiFormat();
-VolumeFormat vtiFormat();   ///< vtk_image.cpp
-VolumeFormat pvtiFormat();  ///< vtk_image.cpp
-VolumeFormat pvdFormat();   ///< vtk_collection.cpp
-VolumeFormat dicomFormat(); ///< foreign.cpp
-VolumeFormat imageFormat(); ///< foreign.cpp
+VolumeFormat vtiFormat();    ///< vtk_image.cpp
+VolumeFormat pvtiFormat();   ///< vtk_image.cpp
+VolumeFormat pvdFormat();    ///< vtk_collection.cpp
+VolumeFormat dicomFormat();  ///< foreign.cpp
+VolumeFormat imageFormat();  ///< foreign.cpp
+VolumeFormat hdf5Format();   ///< foreign.cpp
+VolumeFormat netCdfFormat(); ///< foreign.cpp
 
 /// Whether a file is DICOM by its content.
 bool isDicom(const std::string& path);

@@ -102,6 +102,7 @@ json jsonOf(const ReaderLayout& answer) {
               {"patient", layout.worldAxes == WorldAxes::Patient},
               {"array", layout.array},
               {"notices", layout.notices}};
+    if (layout.scaling) text["scaling"] = {{"slope", layout.scaling->slope}, {"intercept", layout.scaling->intercept}};
     if (answer.missing) text["missing"] = *answer.missing;
     return {{"layout", std::move(text)}};
 }
@@ -123,6 +124,8 @@ ReaderLayout layoutIn(const json& message) {
     layout.array = textIn(value["array"]);
     layout.notices = textsIn(value["notices"]);
     layout.bigEndian = std::endian::native == std::endian::big;
+    if (value.has("scaling"))
+        layout.scaling = ValueScaling{value["scaling"]["slope"].number(), value["scaling"]["intercept"].number()};
     if (value.has("missing")) answer.missing = value["missing"].number();
     return answer;
 }

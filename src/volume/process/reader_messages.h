@@ -19,10 +19,10 @@ struct ReaderRequest {
         List,     ///< answered by the names of the files that hold the voxels
         Read      ///< answered by a ReaderLayout; the voxels follow once it has been told to go on
     };
-    std::string program; ///< that is asked: "pellucid-reader" or "pellucid-image-reader"
+    std::string program; ///< that is asked: "pellucid-reader", "pellucid-image-reader" or "pellucid-array-reader"
     Task task = Task::Describe;
     std::string path;        ///< a file or a folder
-    std::string array;       ///< the series that is wanted; empty: the one with the most slices
+    std::string array;       ///< the series or array that is wanted; empty: the largest
     int step = 0;            ///< the time step that is read
     bool middleOnly = false; ///< of its slices only the one in the middle
 };
@@ -30,7 +30,7 @@ struct ReaderRequest {
 /// What it says of the voxels that it is about to write: x fastest, without gaps, in this machine's byte order.
 struct ReaderLayout {
     FileLayout layout;             ///< but for where the values are
-    std::optional<double> missing; ///< the value that stands for none, as the file says
+    std::optional<double> missing; ///< the value that stands for none, as the file says; scaled
 };
 
 nlohmann::json jsonOf(const ReaderRequest& request);
