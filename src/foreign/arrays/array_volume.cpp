@@ -213,7 +213,7 @@ ReaderLayout ArrayVolume::layout(int step) const {
     layout.origin = m_axes.origin;
     layout.directions = m_axes.directions;
     layout.array = printable(m_chosen->name);
-    layout.notices = m_notices;
+    for (const std::string& notice : m_notices) layout.notices.push_back(printable(notice));
     answer.missing = missingAs(contentsOf(layout).type, m_packed);
     return answer;
 }
@@ -222,7 +222,7 @@ FileContents ArrayVolume::contents() const {
     FileContents contents = contentsOf(layout(0).layout);
     contents.steps = static_cast<int>(std::min<std::uint64_t>(steps(), std::numeric_limits<int>::max()));
     contents.times = m_axes.times;
-    contents.timeUnit = m_axes.timeUnit;
+    contents.timeUnit = printable(m_axes.timeUnit);
     for (const ArrayVariable* volume : m_volumes) {
         contents.arrays.push_back(printable(volume->name));
         contents.details.push_back(detailsOf(*volume));
