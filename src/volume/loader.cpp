@@ -18,9 +18,9 @@ namespace {
 constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
-    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(),     vtiFormat(),
-                                                    pvtiFormat(), pvdFormat(),       vtkLegacyFormat(), pvmFormat(),
-                                                    datFormat(),  vvdFormat(),       imageFormat(),     dicomFormat()};
+    static const std::vector<VolumeFormat> kFormats{
+        nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),   pvtiFormat(),  pvdFormat(),  vtkLegacyFormat(),
+        pvmFormat(),  datFormat(),       vvdFormat(),   imageFormat(), dicomFormat(), hdf5Format(), netCdfFormat()};
     return kFormats;
 }
 

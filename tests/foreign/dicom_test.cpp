@@ -405,7 +405,7 @@ TEST_CASE("what happens to the process that reads is told in a sentence", "[dico
     with("read line; echo '{\"layout\":{\"axes\":[{\"size\":2000000000,\"components\":false,\"time\":false},"
          "{\"size\":1000000000,\"components\":false,\"time\":false}],\"type\":0,\"spacing\":[1,1,1],\"origin\":[0,0,0],"
          "\"directions\":[[1,0,0],[0,1,0],[0,0,1]],\"patient\":false,\"array\":\"\",\"layers_at_once\":1,\"notices\":[]}}'; sleep 100");
-    CHECK_THROWS_WITH(loadVolume(at(path)), Contains("memory"));
+    CHECK_THROWS_WITH(loadVolume(at(path)), Contains("would take hours"));
     setReaderProgram(folder.path("none"));
     CHECK_THROWS_WITH(loadVolume(at(path)), Contains("cannot be started"));
     // Cancelled: the process is ended, and nobody waits for it.

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "volume/formats/content.h"
 #include "volume/formats/file_check.h"
 
 namespace pellucid {

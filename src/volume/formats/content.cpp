@@ -120,6 +120,10 @@ std::string ofVolume(std::string_view head) {
     if (lowerCase(head.substr(0, 22)).starts_with("# vtk datafile version")) return kVtkLegacyContent;
     if (isDds(head) || head.starts_with("PVM\n") || head.starts_with("PVM2\n") || head.starts_with("PVM3\n"))
         return kPvmContent;
+    if (head.starts_with("\x89HDF") || (head.size() > 512 && head.substr(512).starts_with("\x89HDF\r\n")))
+        return kHdf5Content; // MATLAB 7.3 has a header of its own before it
+    if (head.starts_with("CDF\x01") || head.starts_with("CDF\x02") || head.starts_with("CDF\x05"))
+        return kNetCdfContent;
     if (isNifti(head) || (head.starts_with("\x1f\x8b") && isNifti(unpackedHead(head)))) return kNiftiContent;
     const std::size_t first = head.find_first_not_of(" \t\r\n\xef\xbb\xbf");
     if (first != std::string_view::npos && head[first] == '<') return ofXml(withoutComments(std::string(head)));
@@ -138,11 +142,16 @@ bool beginsLikeNifti(std::string_view head) {
 
 std::string describeContent(std::string_view head) {
     static constexpr std::pair<std::string_view, const char*> kSignatures[] = {
-        {"\x89PNG"sv, "a PNG image"},       {"\xff\xd8\xff"sv, "a JPEG image"},
-        {"GIF8"sv, "a GIF image"},          {"BM"sv, "a BMP image"},
-        {"%PDF"sv, "a PDF document"},       {"\x1f\x8b"sv, "gzip-compressed data"},
-        {"BZh"sv, "bzip2-compressed data"}, {"PK\x03\x04"sv, "a ZIP archive"},
-        {"\x89HDF"sv, "an HDF5 file"},      {"<"sv, "an XML or HTML text"},
+        {"\x89PNG"sv, "a PNG image"},
+        {"\xff\xd8\xff"sv, "a JPEG image"},
+        {"GIF8"sv, "a GIF image"},
+        {"BM"sv, "a BMP image"},
+        {"%PDF"sv, "a PDF document"},
+        {"\x1f\x8b"sv, "gzip-compressed data"},
+        {"BZh"sv, "bzip2-compressed data"},
+        {"PK\x03\x04"sv, "a ZIP archive"},
+        {"\x0e\x03\x13\x01"sv, "an HDF4 file"},
+        {"<"sv, "an XML or HTML text"},
     };
     if (const std::string volume = ofVolume(head); !volume.empty()) return volume;
     for (const auto& [signature, description] : kSignatures)

@@ -13,7 +13,8 @@ inline constexpr const char *kNrrdContent = "an NRRD file", *kMetaImageContent =
                             *kVtkLegacyContent = "a VTK file", *kPvmContent = "a PVM file",
                             *kDatContent = "a header of Voreen or Inviwo",
                             *kVvdContent = "a volume description of Voreen", *kDicomContent = "a DICOM file",
-                            *kTiffContent = "a TIFF image";
+                            *kTiffContent = "a TIFF image", *kHdf5Content = "an HDF5 file",
+                            *kNetCdfContent = "a NetCDF file";
 
 /// So many first bytes of a file tell what it is.
 inline constexpr std::size_t kHeadBytes = 1024;

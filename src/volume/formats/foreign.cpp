@@ -1,5 +1,5 @@
 // Formats that are read by libraries, in processes of their own (src/foreign, app/reader): DICOM by GDCM, pictures as
-// slices by OpenImageIO, Zarr by the libraries that unpack its chunks.
+// slices by OpenImageIO, arrays in HDF5 and NetCDF by libhdf5, Zarr by the libraries that unpack its chunks.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -42,6 +42,13 @@ ReaderRequest imageRequest(const VolumeSource& source) {
         if (describeContent(head) != kTiffContent) throw notOfFormat("a TIFF image", source.path, head);
     }
     return requestOf(source, kOfImages);
+}
+/// HDF5 may stand behind anything: the reader tells what is none.
+ReaderRequest arrayRequest(const VolumeSource& source) {
+    if (volumeSuffix(source.path) == ".mat" && fileHead(source.path, 10) == "MATLAB 5.0")
+        throw FileError("MATLAB's files are read from version 7.3 on, this is an older one", source.path,
+                        "save it in MATLAB by save(…, '-v7.3')");
+    return requestOf(source, kOfArrays);
 }
 
 ReaderRequest zarrRequest(const VolumeSource& source) {
@@ -156,6 +163,24 @@ VolumeFormat imageFormat() {
 
 VolumeFormat zarrFormat() {
     return {"OME-Zarr", {".zarr"}, describe<zarrRequest>, read<zarrRequest>, dataFiles<zarrRequest>};
+}
+
+VolumeFormat hdf5Format() {
+    return {"HDF5",
+            {".h5", ".hdf5", ".hdf", ".he5", ".mat"},
+            describe<arrayRequest>,
+            read<arrayRequest>,
+            dataFiles<arrayRequest>,
+            kHdf5Content};
+}
+
+VolumeFormat netCdfFormat() {
+    return {"NetCDF",
+            {".nc", ".nc4", ".cdf", ".netcdf"},
+            describe<arrayRequest>,
+            read<arrayRequest>,
+            dataFiles<arrayRequest>,
+            kNetCdfContent};
 }
 
 } // namespace pellucid

@@ -50,9 +50,11 @@ VolumeFormat vtkLegacyFormat();
 VolumeFormat pvmFormat();
 VolumeFormat datFormat();
 VolumeFormat vvdFormat();
-VolumeFormat dicomFormat(); ///< foreign.cpp
-VolumeFormat imageFormat(); ///< foreign.cpp
-VolumeFormat zarrFormat();  ///< foreign.cpp; of folders only
+VolumeFormat dicomFormat();  ///< foreign.cpp
+VolumeFormat imageFormat();  ///< foreign.cpp
+VolumeFormat hdf5Format();   ///< foreign.cpp
+VolumeFormat netCdfFormat(); ///< foreign.cpp
+VolumeFormat zarrFormat();   ///< foreign.cpp; of folders only
 
 /// Whether a file is DICOM by its content.
 bool isDicom(const std::string& path);

@@ -87,8 +87,8 @@ struct FileLayout : StoredValues {
     /// Where given: the values are in these, which together have all voxels that are asked for; of a voxel that several
     /// have, the last one's. They have the type of the layout; its axes are one of components, or none, and x, y, z.
     std::vector<FilePiece> pieces;
-    /// Where given: what is taken of these values, its region in voxels of this layout, as has been settled. Its excerpt
-    /// tells which part of which data that is.
+    /// Where given: what is taken of these values, its region in voxels of this layout, as has been settled. Its
+    /// excerpt tells which part of which data that is.
     std::optional<ExcerptPlan> plan;
     std::string array;               ///< name of the array that this is, where the file names its arrays
     std::vector<std::string> arrays; ///< of these, all names

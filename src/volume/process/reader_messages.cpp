@@ -115,6 +115,7 @@ json jsonOf(const ReaderLayout& answer) {
                                   {"factors", wholesOf(level.factors)},
                                   {"spacing", numbersOf(level.spacing)},
                                   {"origin", numbersOf(level.origin)}});
+    if (layout.scaling) text["scaling"] = {{"slope", layout.scaling->slope}, {"intercept", layout.scaling->intercept}};
     if (answer.missing) text["missing"] = *answer.missing;
     return {{"layout", std::move(text)}};
 }
@@ -136,6 +137,8 @@ ReaderLayout layoutIn(const json& message) {
     layout.array = textIn(value["array"]);
     layout.notices = textsIn(value["notices"]);
     layout.bigEndian = std::endian::native == std::endian::big;
+    if (value.has("scaling"))
+        layout.scaling = ValueScaling{value["scaling"]["slope"].number(), value["scaling"]["intercept"].number()};
     if (value.has("missing")) answer.missing = value["missing"].number();
     answer.layersAtOnce = value["layers_at_once"].whole(1, kMostWhole);
     if (!value.has("levels")) return answer;

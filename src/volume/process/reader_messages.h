@@ -19,10 +19,10 @@ struct ReaderRequest {
         List,     ///< answered by the names of the files that hold the voxels
         Read      ///< answered by a ReaderLayout; the voxels follow once it has been told to go on
     };
-    std::string program; ///< that is asked: "pellucid-reader" or "pellucid-image-reader"
+    std::string program; ///< that is asked: "pellucid-reader", "pellucid-image-reader" or "pellucid-array-reader"
     Task task = Task::Describe;
     std::string path;  ///< a file or a folder
-    std::string array; ///< the series that is wanted; empty: the one with the most slices
+    std::string array; ///< the series, image or array that is wanted; empty: the largest
     int step = 0;      ///< the time step that is read
 };
 
@@ -36,7 +36,7 @@ struct ReaderLevel {
 /// What it says of the voxels, which it writes box by box: x fastest, without gaps, in this machine's byte order.
 struct ReaderLayout {
     FileLayout layout;               ///< but for where the values are
-    std::optional<double> missing;   ///< the value that stands for none, as the file says
+    std::optional<double> missing;   ///< the value that stands for none, as the file says; scaled
     std::vector<ReaderLevel> levels; ///< from fine to coarse
     int layersAtOnce = 1;            ///< layers across z that are stored together
 };

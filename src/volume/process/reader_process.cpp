@@ -420,7 +420,7 @@ Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool m
     const ReaderBox all{0, {Int3(0), dims}, 0};
     const std::uint64_t bytes = bytesOf(all, answer, source.path);
     // Large volumes that are kept as they are read stay where they are.
-    const bool isKept = plan.isWhole() && bytes >= kMapBytes && contents.components == 1 &&
+    const bool isKept = plan.isWhole() && bytes >= kMapBytes && contents.components == 1 && !layout.scaling &&
                         bytes == voxelCount(dims) * bytesPerSample(contents.type);
     if (isKept) {
         reader.makeRoom(bytes);
