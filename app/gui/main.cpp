@@ -7,6 +7,7 @@
 
 #include <QApplication>
 #include <QCommandLineParser>
+#include <QUrl>
 
 #include "controllers/controllers.h"
 #include "controllers/menu_actions.h"
@@ -129,7 +130,8 @@ Options optionsOf(QCommandLineParser& parser) {
     if (parser.isSet("study")) return o;
     o.tf = parser.value("tf");
     QStringList volumes;
-    for (const QString& file : parser.positionalArguments()) {
+    for (const QString& argument : parser.positionalArguments()) {
+        const QString file = argument.startsWith("file:") ? QUrl(argument).toLocalFile() : argument;
         const bool isTf = hasTfSuffix(file.toStdString());
         if (isTf && !o.tf.isEmpty())
             throw UsageError("more than one transfer function", file.toStdString(), "give one");

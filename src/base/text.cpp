@@ -109,6 +109,21 @@ std::string printableJson(std::string_view json) {
     return result;
 }
 
+std::string percentDecoded(std::string_view text) {
+    const auto digit = [](char c) {
+        if (c >= '0' && c <= '9') return c - '0';
+        if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+        return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    };
+    std::string plain;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool isCode = text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 && digit(text[i + 2]) >= 0;
+        plain += isCode ? static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2])) : text[i];
+        if (isCode) i += 2;
+    }
+    return plain;
+}
+
 std::string inQuotes(std::string_view text) {
     constexpr std::size_t kMost = 40;
     std::string quote("'");

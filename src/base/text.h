@@ -22,6 +22,9 @@ std::string printableLines(std::string_view text);
 /// Of JSON: the same characters, escaped, so that it still says what it said.
 std::string printableJson(std::string_view json);
 
+/// "%20" and the like replaced by the bytes that they stand for.
+std::string percentDecoded(std::string_view text);
+
 /// A text out of a header, in quotes and cut to 40 bytes: a damaged one may go on for long.
 std::string inQuotes(std::string_view text);
 /// The texts of all with another text between each two: "a, b, c". `textOf`: a function or a member.

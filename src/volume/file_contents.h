@@ -30,10 +30,10 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job = {});
 /// Whether the files of a folder are together one volume, or several series of slices: DICOM, or pictures.
 bool isVolumeFolder(const std::string& path);
 
-/// Whether several volumes may be found under a path, which FileContents::arrays names: DICOM.
-bool mayHoldSeries(const std::string& path);
+/// Whether several volumes tend to be found under a path, which FileContents::arrays names: DICOM, OME-Zarr, HDF5, …
+bool mayHoldSeveral(const std::string& path);
 
-/// The slice across the middle of a volume, for a picture of what can be opened. Of paths that mayHoldSeries(). Throws
+/// The slice across the middle of a volume, for a picture of what can be opened. Throws
 /// Error as loadVolume() does.
 Volume loadMiddleSlice(const VolumeSource& source, const JobControl& job = {});
 

@@ -124,6 +124,14 @@ std::optional<NumberedName> numberedName(const std::string& path) {
     return name;
 }
 
+std::string pathOfUrl(const std::string& text) {
+    constexpr std::string_view kScheme = "file://", kHost = "localhost";
+    if (!text.starts_with(kScheme)) return text;
+    std::string_view rest = std::string_view(text).substr(kScheme.size());
+    if (rest.starts_with(kHost)) rest.remove_prefix(kHost.size());
+    return percentDecoded(rest);
+}
+
 bool isGlob(const std::string& path) { return path.find_first_of("*?[") != std::string::npos; }
 
 bool matchesGlob(const std::string& pattern, const std::string& name) {

@@ -21,6 +21,9 @@ struct NumberedName {
 /// "f%03d.raw": one conversion d, i or u, with a width or none; "%%" is a percent sign. Empty for everything else.
 std::optional<NumberedName> numberedName(const std::string& path);
 
+/// The path of a "file:" URL, as other programs copy them; any other text as it is.
+std::string pathOfUrl(const std::string& text);
+
 /// Whether a path has a wildcard: * (any characters), ? (one), [abc], [a-z] (one of these), [!a-z] (none of these).
 bool isGlob(const std::string& path);
 bool matchesGlob(const std::string& pattern, const std::string& name);

@@ -18,9 +18,10 @@ namespace {
 constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::vector<VolumeFormat>& formats() {
-    static const std::vector<VolumeFormat> kFormats{
-        nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),   pvtiFormat(),  pvdFormat(),  vtkLegacyFormat(),
-        pvmFormat(),  datFormat(),       vvdFormat(),   imageFormat(), dicomFormat(), hdf5Format(), netCdfFormat()};
+    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(),     vtiFormat(),
+                                                    pvtiFormat(), pvdFormat(),       vtkLegacyFormat(), pvmFormat(),
+                                                    datFormat(),  vvdFormat(),       imageFormat(),     dicomFormat(),
+                                                    hdf5Format(), netCdfFormat(),    mrmlFormat()};
     return kFormats;
 }
 
@@ -207,11 +208,19 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job) {
 
 bool isVolumeFolder(const std::string& path) { return isFolder(path) && formatOfFolder(path) != nullptr; }
 
-bool mayHoldSeries(const std::string& path) { return isFolder(path) ? holdsDicom(path) : isDicom(path); }
+bool mayHoldSeveral(const std::string& path) {
+    const VolumeFormat* format = findFormat(path);
+    return format != nullptr && format->holdsSeveral;
+}
 
 Volume loadMiddleSlice(const VolumeSource& source, const JobControl& job) {
-    PELLUCID_CHECK(mayHoldSeries(source.path));
-    return readMiddleOfDicom(source, job);
+    requireNotEmpty(source.path);
+    const VolumeFormat& format = formatOf(source.path);
+    if (format.readMiddle != nullptr) return format.readMiddle(source, job);
+    const Int3 dims = format.describe(source, job).dims;
+    VolumeSource middle = source;
+    middle.region = VoxelRegion{{0, 0, dims.z / 2}, {dims.x, dims.y, dims.z / 2 + 1}};
+    return format.read(middle, job);
 }
 
 bool hasVolumeSuffix(const std::string& path) {

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "parse.h"
 #include "session/variable_edits.h"
+#include "volume/file_names.h"
 #include "volume/outside_files.h"
 
 namespace pellucid::cli {
@@ -43,10 +44,11 @@ FrameRange parseFrames(const std::string& text, const std::string& option) {
 void VolumeOptions::add(CLI::App& app, SizeIs size) {
     m_command = app.get_name();
     app.add_option_function<std::string>(
-           "VOLUME", [this](const std::string& text) { path = text; },
-           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVTI, PVD), DICOM, TIFF or (with --raw) headerless file, a "
-           "folder of "
-           "DICOM files or pictures, or sample:NAME; a series: "
+           "VOLUME", [this](const std::string& text) { path = pathOfUrl(text); },
+           "a NRRD, MetaImage, NIfTI, VTK (VTI, PVTI, PVD, legacy), DICOM, TIFF, HDF5, NetCDF, PVM, Voreen, Inviwo or "
+           "(with --raw) headerless file, a scene of 3D Slicer, a folder of DICOM files, pictures or OME-Zarr, a "
+           "file:// "
+           "address, or sample:NAME; a series: "
            "a file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
            "--session")
         ->type_name("");

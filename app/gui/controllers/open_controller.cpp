@@ -1,7 +1,11 @@
 #include "controllers/open_controller.h"
 
+#include <QApplication>
+#include <QClipboard>
 #include <QMenu>
 #include <QMessageBox>
+#include <QMimeData>
+#include <QUrl>
 
 #include <nlohmann/json.hpp>
 
@@ -20,8 +24,10 @@
 #include "tf/presets.h"
 #include "volume/excerpt.h"
 #include "volume/file_contents.h"
+#include "volume/file_names.h"
 #include "volume/outside_files.h"
 #include "volume/procedural.h"
+#include "volume/series.h"
 #include "widgets/number_text.h"
 
 namespace pellucid::gui {
@@ -116,6 +122,11 @@ void OpenController::addActions() {
              [this] { chooseSeries(); });
     file.add("openRawAction", tr("Open ra&w data…"), {},
              tr("A file without a header: you say how its bytes are laid out"), [this] { chooseRaw(); });
+    file.add("openFolderAction", tr("Open &folder…"), "Ctrl+Alt+F",
+             tr("A folder of DICOM files or pictures, an OME-Zarr folder, or one of time steps"),
+             [this] { chooseFolder(); });
+    file.add("pasteAction", tr("Open from the clip&board"), "Ctrl+V",
+             tr("Paths, one a line, or files that another program has copied"), [this] { openCopied(); });
     m_clearRecent = recent.add("clearRecentAction", tr("&Clear this list"), {}, {}, [this] {
         QSettings().remove(kRecentKey);
         updateRecentFiles();
@@ -420,6 +431,36 @@ void OpenController::openPaths(QStringList paths) {
     });
 }
 
+void OpenController::chooseFolder() {
+    const QString folder =
+        QFileDialog::getExistingDirectory(m_services.window(), tr("Open folder"), keptFolder("volumeFolder"));
+    if (folder.isEmpty()) return;
+    keepFolderOf("volumeFolder", folder);
+    openPath(folder);
+}
+
+void OpenController::openCopied() {
+    const QMimeData* copied = QApplication::clipboard()->mimeData();
+    QStringList paths;
+    for (const QUrl& url : copied->urls())
+        if (url.isLocalFile()) paths << url.toLocalFile();
+    if (paths.isEmpty())
+        for (QString line : copied->text().split('\n', Qt::SkipEmptyParts)) {
+            line = line.trimmed();
+            if (line.size() > 1 && line.startsWith('"') && line.endsWith('"')) line = line.mid(1, line.size() - 2);
+            if (!line.isEmpty()) paths << QString::fromStdString(pathOfUrl(line.toStdString()));
+        }
+    attempt(tr("Cannot open from the clipboard"), [&] {
+        if (paths.isEmpty())
+            throw UsageError("there is no path on the clipboard", "", "copy a file or its path in another program");
+        for (const QString& path : paths)
+            if (!QFileInfo::exists(path) && !path.startsWith("sample:") && !isSeriesPattern(path.toStdString()))
+                throw FileError("there is no file of this name", path.left(200).toStdString(),
+                                "copy a file or its path in another program");
+        openPaths(paths);
+    });
+}
+
 void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec) {
     if (paths.size() == 1 && isSession(paths.front())) return openSession(paths.front());
     VolumeSource source = sourceOf(paths);
@@ -437,9 +478,9 @@ void OpenController::openSeries(const Look& look, const FileContents& contents) 
 }
 
 void OpenController::openChosen(const VolumeSource& source, const QString& tfSpec) {
-    if (source.raw || source.isSample() || !source.array.empty() || !mayHoldSeries(source.path))
+    if (source.raw || source.isSample() || !source.array.empty() || !mayHoldSeveral(source.path))
         return openVolume(source, tfSpec);
-    m_busyText = tr("Looking for series in %1…").arg(titleOf(source));
+    m_busyText = tr("Looking into %1…").arg(titleOf(source));
     m_look.start({source, tfSpec}, QString::fromStdString(source.path));
 }
 

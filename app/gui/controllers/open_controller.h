@@ -120,6 +120,8 @@ private:
     bool askRawLayout(VolumeSource& source);                         ///< false: the user gave up
     bool askLayout(VolumeSource& source, const QStringList& files);  ///< likewise
     void chooseVolume();
+    void chooseFolder();
+    void openCopied(); ///< what the clipboard names
     void chooseSeries();
     QStringList askFiles(const QString& title, const QString& others);
     void chooseRaw();

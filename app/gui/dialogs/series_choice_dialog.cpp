@@ -27,7 +27,7 @@ QPixmap emptyPicture(const QWidget& widget) {
 
 SeriesChoiceDialog::SeriesChoiceDialog(const VolumeSource& source, const FileContents& contents, QWidget* parent)
     : QDialog(parent), m_names(contents.arrays),
-      m_list(named(new QListWidget(this), "seriesList", tr("Double-click a series to open it"))),
+      m_list(named(new QListWidget(this), "seriesList", tr("Double-click a volume to open it"))),
       m_pictures(
           &SeriesChoiceDialog::pictureOf,
           [this](const Asked& asked, QImage& image) {
@@ -37,9 +37,9 @@ SeriesChoiceDialog::SeriesChoiceDialog(const VolumeSource& source, const FileCon
           },
           WhenBusy::Queue) {
     setObjectName("seriesChoiceDialog");
-    setWindowTitle(tr("Choose a series"));
+    setWindowTitle(tr("Choose a volume"));
     auto* what = wrappedLabel("seriesWhat", this);
-    what->setText(tr("%L1 series were found. Which one do you want to open?").arg(m_names.size()));
+    what->setText(tr("%L1 volumes were found. Which one do you want to open?").arg(m_names.size()));
     m_list->setIconSize({kPictureSize, kPictureSize});
     m_list->setMinimumSize(460, 360);
     m_list->setSpacing(3);

@@ -104,6 +104,7 @@ std::string withoutComments(std::string text) {
 std::string ofXml(const std::string& text) {
     const std::string_view head = text;
     if (head.find("<VoreenData") != std::string_view::npos) return kVvdContent;
+    if (head.find("<MRML") != std::string_view::npos) return kMrmlContent;
     const std::size_t begin = head.find("<VTKFile");
     if (begin == std::string_view::npos) return {};
     const std::string_view tag = head.substr(begin, head.find('>', begin) - begin);

@@ -14,7 +14,7 @@ inline constexpr const char *kNrrdContent = "an NRRD file", *kMetaImageContent =
                             *kDatContent = "a header of Voreen or Inviwo",
                             *kVvdContent = "a volume description of Voreen", *kDicomContent = "a DICOM file",
                             *kTiffContent = "a TIFF image", *kHdf5Content = "an HDF5 file",
-                            *kNetCdfContent = "a NetCDF file";
+                            *kNetCdfContent = "a NetCDF file", *kMrmlContent = "a scene of 3D Slicer";
 
 /// So many first bytes of a file tell what it is.
 inline constexpr std::size_t kHeadBytes = 1024;

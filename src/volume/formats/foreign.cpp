@@ -146,41 +146,40 @@ bool holdsImages(const std::string& folder) {
     });
 }
 
-Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job) {
-    return readMiddleInProcess(source, dicomRequest(source), job);
+namespace {
+
+template <auto requestFor>
+Volume readMiddle(const VolumeSource& source, const JobControl& job) {
+    return readMiddleInProcess(source, requestFor(source), job);
 }
+
+/// A format that a reader process reads.
+template <auto requestFor>
+VolumeFormat foreignFormat(const char* name, std::vector<std::string> suffixes, const char* content,
+                           bool holdsSeveral) {
+    VolumeFormat format{name,   std::move(suffixes), describe<requestFor>, read<requestFor>, dataFiles<requestFor>,
+                        content};
+    format.holdsSeveral = holdsSeveral;
+    format.readMiddle = readMiddle<requestFor>;
+    return format;
+}
+
+} // namespace
 
 VolumeFormat dicomFormat() {
-    return {
-        "DICOM",      {".dcm", ".dicom", ".ima"}, describe<dicomRequest>, read<dicomRequest>, dataFiles<dicomRequest>,
-        kDicomContent};
+    return foreignFormat<dicomRequest>("DICOM", {".dcm", ".dicom", ".ima"}, kDicomContent, true);
 }
 
-VolumeFormat imageFormat() {
-    return {"pictures",         {".tif", ".tiff"},       describe<imageRequest>,
-            read<imageRequest>, dataFiles<imageRequest>, kTiffContent};
-}
+VolumeFormat imageFormat() { return foreignFormat<imageRequest>("pictures", {".tif", ".tiff"}, kTiffContent, false); }
 
-VolumeFormat zarrFormat() {
-    return {"OME-Zarr", {".zarr"}, describe<zarrRequest>, read<zarrRequest>, dataFiles<zarrRequest>};
-}
+VolumeFormat zarrFormat() { return foreignFormat<zarrRequest>("OME-Zarr", {".zarr"}, nullptr, true); }
 
 VolumeFormat hdf5Format() {
-    return {"HDF5",
-            {".h5", ".hdf5", ".hdf", ".he5", ".mat"},
-            describe<arrayRequest>,
-            read<arrayRequest>,
-            dataFiles<arrayRequest>,
-            kHdf5Content};
+    return foreignFormat<arrayRequest>("HDF5", {".h5", ".hdf5", ".hdf", ".he5", ".mat"}, kHdf5Content, true);
 }
 
 VolumeFormat netCdfFormat() {
-    return {"NetCDF",
-            {".nc", ".nc4", ".cdf", ".netcdf"},
-            describe<arrayRequest>,
-            read<arrayRequest>,
-            dataFiles<arrayRequest>,
-            kNetCdfContent};
+    return foreignFormat<arrayRequest>("NetCDF", {".nc", ".nc4", ".cdf", ".netcdf"}, kNetCdfContent, true);
 }
 
 } // namespace pellucid

@@ -27,6 +27,9 @@ struct VolumeFormat {
     std::vector<std::string> sharedSuffixes = {}; ///< other files have these, too: they do not tell the format
     /// Whether a file of such a suffix belongs to a file of this format that is beside it. Null: none does.
     bool (*isBeside)(const std::string& path) = nullptr;
+    bool holdsSeveral = false; ///< its files tend to have several volumes, of which one is chosen
+    /// The layer across the middle of the z axis. Null: described first, then read as a region.
+    Volume (*readMiddle)(const VolumeSource& source, const JobControl& job) = nullptr;
 };
 
 /// The `describe` and `read` of a format whose header becomes a layout: layoutOf(source, step, job), where `step` is
@@ -50,6 +53,7 @@ VolumeFormat vtkLegacyFormat();
 VolumeFormat pvmFormat();
 VolumeFormat datFormat();
 VolumeFormat vvdFormat();
+VolumeFormat mrmlFormat();
 VolumeFormat dicomFormat();  ///< foreign.cpp
 VolumeFormat imageFormat();  ///< foreign.cpp
 VolumeFormat hdf5Format();   ///< foreign.cpp
@@ -66,9 +70,6 @@ bool holdsZarr(const std::string& folder);
 bool holdsImages(const std::string& folder);
 /// The pictures in a folder that have the most frequent suffix, in the order in which people count.
 std::vector<std::string> imagesIn(const std::string& folder);
-/// The slice in the middle of a DICOM volume.
-Volume readMiddleOfDicom(const VolumeSource& source, const JobControl& job);
-
 /// Time steps of source.path as *source.raw says, see contentsOf(). Throws FileError.
 int rawSteps(const VolumeSource& source, const JobControl& job = {});
 /// Headerless data, laid out as *source.raw says; of a gzip file that has another size, what it unpacks to.

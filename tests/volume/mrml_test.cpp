@@ -1,0 +1,93 @@
+// Scenes of 3D Slicer, and paths as other programs copy them.
+#include <catch2/catch.hpp>
+
+#include "support/temp_folder.h"
+#include "volume/file_contents.h"
+#include "volume/file_names.h"
+#include "volume/loader.h"
+#include "volume/outside_files.h"
+#include "volume/volume_writer.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+VolumeSource at(const std::string& path, const std::string& array = "") {
+    VolumeSource source;
+    source.path = path;
+    source.array = array;
+    return source;
+}
+
+void writeOf(const std::string& path, std::uint8_t value) {
+    Geometry g;
+    g.dims = {2, 2, 2};
+    writeVolume(Volume(g, SampleArray<std::uint8_t>(std::vector<std::uint8_t>{value, 1, 2, 3, 4, 5, 6, 7})), path);
+}
+
+const std::string kScene =
+    "<MRML version=\"Slicer 5.2.2\">\n"
+    "<Volume id=\"vtkMRMLScalarVolumeNode1\" name=\"CT &amp; chest\" "
+    "references=\"display:vtkMRMLScalarVolumeDisplayNode1;storage:vtkMRMLVolumeArchetypeStorageNode1;\"></Volume>\n"
+    "<Volume id=\"vtkMRMLScalarVolumeNode2\" name=\"MR\" "
+    "storageNodeRef=\"vtkMRMLVolumeArchetypeStorageNode2\"></Volume>\n"
+    "<Volume id=\"vtkMRMLScalarVolumeNode3\" name=\"never saved\" references=\"display:x;\"></Volume>\n"
+    "<VolumeArchetypeStorage id=\"vtkMRMLVolumeArchetypeStorageNode1\" "
+    "fileName=\"CT%20chest.nrrd\"></VolumeArchetypeStorage>\n"
+    "<VolumeArchetypeStorage id=\"vtkMRMLVolumeArchetypeStorageNode2\" "
+    "fileName=\"Data/mr.mha\"></VolumeArchetypeStorage>\n"
+    "</MRML>\n";
+
+} // namespace
+
+TEST_CASE("the volumes of a scene of 3D Slicer open", "[mrml]") {
+    const TempFolder folder;
+    std::filesystem::create_directories(folder.path("Data"));
+    writeOf(folder.path("CT chest.nrrd"), 100);
+    writeOf(folder.path("Data/mr.mha"), 200);
+    const std::string path = folder.write("scene.mrml", kScene);
+    const FileContents contents = contentsOf(at(path));
+    CHECK(contents.arrays == std::vector<std::string>{"CT & chest", "MR"});
+    CHECK(contents.array == "CT & chest");
+    CHECK(contents.details == std::vector<std::string>{"CT chest.nrrd", "mr.mha"});
+    CHECK(mayHoldSeveral(path));
+    const Volume first = loadVolume(at(path));
+    CHECK(first.value(0) == 100);
+    CHECK_THAT(first.notices.back(), Contains("of 2 in the scene is shown"));
+    CHECK(loadVolume(at(path, "MR")).value(0) == 200);
+    CHECK(loadMiddleSlice(at(path, "MR")).dims() == Int3(2, 2, 1));
+    CHECK_THROWS_WITH(loadVolume(at(path, "PET")), Contains("PET") && Contains("MR"));
+    CHECK(filesOf(at(path)).size() == 3);
+}
+
+TEST_CASE("what a scene cannot name is refused", "[mrml]") {
+    const TempFolder folder;
+    const auto errorOf = [&](const std::string& text) {
+        try {
+            static_cast<void>(loadVolume(at(folder.write("a.mrml", text))));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    const auto scene = [](const std::string& file) {
+        return "<MRML><Volume name=\"a\" storageNodeRef=\"s\"/><S_VolumeArchetypeStorage id=\"s\" fileName=\"" + file +
+               "\"/></MRML>";
+    };
+    CHECK_THAT(errorOf(scene("../x.nrrd")), Contains("outside") || Contains("folder"));
+    CHECK_THAT(errorOf(scene("%2e%2e/x.nrrd")), Contains("outside") || Contains("folder"));
+    CHECK_THAT(errorOf(scene("a.mrml")), Contains("names another scene"));
+    CHECK_THAT(errorOf(scene("gone.nrrd")), Contains("no such file") && Contains("gone.nrrd"));
+    CHECK_THAT(errorOf("<MRML><Volume name=\"a\"/></MRML>"), Contains("no volumes that have been saved"));
+    CHECK_THAT(errorOf("<html></html>"), Contains("not a scene of 3D Slicer"));
+}
+
+TEST_CASE("file addresses are paths", "[mrml]") {
+    CHECK(pathOfUrl("file:///a/b%20c%C3%A9.nrrd") == "/a/b cé.nrrd");
+    CHECK(pathOfUrl("file://localhost/a.nrrd") == "/a.nrrd");
+    CHECK(pathOfUrl("/a/b%20c") == "/a/b%20c"); // a name may have a percent sign
+    CHECK(pathOfUrl("file:///100%") == "/100%");
+    CHECK(pathOfUrl("file:///a%zz") == "/a%zz");
+}
