@@ -339,7 +339,8 @@ std::vector<std::string> Hdf5File::checkSources(const Hdf5Handle& how, const Arr
     std::uint64_t filled = 0;
     for (std::size_t n = 0; n < count; ++n) {
         const Hdf5Handle part(H5Pget_virtual_vspace(how.id(), n));
-        filled += static_cast<std::uint64_t>(std::max<hssize_t>(H5Sget_select_npoints(part.id()), 0));
+        const hssize_t points = H5Sget_select_npoints(part.id());
+        filled += points < 0 ? valuesIn(variable) : static_cast<std::uint64_t>(points); // below 0: without end
         std::array<char, 4096> file{}, array{};
         H5Pget_virtual_filename(how.id(), n, file.data(), file.size());
         H5Pget_virtual_dsetname(how.id(), n, array.data(), array.size());
