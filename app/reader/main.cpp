@@ -1,4 +1,4 @@
-// pellucid-reader and pellucid-image-reader: each reads files of formats whose library it has, for the program that has
+// pellucid-reader, pellucid-image-reader and pellucid-array-reader: each reads files of formats whose library it has, for the program that has
 // started it (volume/process/reader_process.h). Its standard input says what to read; voxels go to the file number 3.
 #include <algorithm>
 #include <cstdint>

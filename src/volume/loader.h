@@ -42,14 +42,14 @@ struct VolumeSource {
     std::vector<std::string> more;    ///< files of the frames after that of `path`, in their order
     std::optional<FrameRange> frames; ///< only these of all that are there
     int step = 0;                     ///< of a file (or sample) with several time steps, from 0: the one that is read
-    std::string array;                ///< of a file with named arrays; empty: its active scalars, else the first
-    std::optional<RawLayout> raw;     ///< given: the file is headerless
-    std::optional<double> missing;    ///< this value is invalid (besides what the file declares)
-    std::optional<ValueRange> range;  ///< the user's intensity window
-    int component = 0;                ///< of a multi-component file
-    std::optional<GridAxes> axes;     ///< how i, j, k run, whatever the file says; empty: as it says
-    int sampleSize = 0;               ///< --size of a sample, 0 = its default
-    std::uint32_t seed = 1;           ///< of a sample
+    std::string array;             ///< of a file with named arrays; empty: its active scalars, the largest or the first
+    std::optional<RawLayout> raw;  ///< given: the file is headerless
+    std::optional<double> missing; ///< this value is invalid (besides what the file declares)
+    std::optional<ValueRange> range; ///< the user's intensity window
+    int component = 0;               ///< of a multi-component file
+    std::optional<GridAxes> axes;    ///< how i, j, k run, whatever the file says; empty: as it says
+    int sampleSize = 0;              ///< --size of a sample, 0 = its default
+    std::uint32_t seed = 1;          ///< of a sample
     /// Each voxel is the mean of so many along each axis (see excerpt.h). 1: all voxels, or an error where memory has
     /// no room for them; 0: likewise, but by the smallest factor for which there is room.
     int downsample = 0;
@@ -66,7 +66,8 @@ struct VolumeSource {
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
-/// Files: NRRD/NHDR, MetaImage, NIfTI, VTK image data (VTI, PVTI) and collections of files (PVD); headerless raw. Of a
+/// Files: NRRD/NHDR, MetaImage, NIfTI, VTK image data (VTI, PVTI) and collections of files (PVD); DICOM, pictures, HDF5
+/// and NetCDF, in processes of their own; headerless raw. Of a
 /// file with several time steps VolumeSource::step is read.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
 

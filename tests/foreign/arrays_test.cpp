@@ -316,6 +316,15 @@ TEST_CASE("HDF5 reads no file outside of its folder", "[arrays]") {
         return loadVolume(at(folder.path("virtual.h5")));
     };
     CHECK(isCounted(virtualOf("other.h5")));
+    {
+        Hdf5Writer file(folder.path("partly.h5"));
+        const hsize_t dims[] = {2, 3, 4}, wider[] = {3, 3, 4}, first[] = {0, 0, 0};
+        const hid_t source = H5Screate_simple(3, dims, nullptr), space = H5Screate_simple(3, wider, nullptr);
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, first, nullptr, dims, nullptr);
+        H5Pset_virtual(file.how, space, "other.h5", "/v", source);
+        file.array("/w", {3, 3, 4}, std::vector<std::int16_t>{});
+    }
+    CHECK(hasNotice(loadVolume(at(folder.path("partly.h5"))), "12 of 36 values of '/w' are in no file"));
     CHECK_THROWS_WITH(virtualOf("/etc/passwd"), Contains("which is outside this folder"));
     CHECK_THROWS_WITH(virtualOf("none.h5"), Contains("in the file 'none.h5', which cannot be read"));
 }
@@ -458,7 +467,7 @@ TEST_CASE("axes stored in another order lie along the same axes of the world", "
     CHECK(g.worldFromVoxel(Vec3(0, 2, 1)) == Vec3(1, 2, 0));
 }
 
-TEST_CASE("lengths get one unit; unequal spacing is told of", "[arrays]") {
+TEST_CASE("lengths get one unit, and unequal spacing is told of", "[arrays]") {
     const TempFolder folder;
     const auto load = [&](const std::string& unitOfZ, const std::vector<double>& y) {
         {

@@ -188,6 +188,7 @@ std::string fault(const Include& include) {
         return "only pellucid-mpi and the plugin may include ranks/mpi";
     if (startsWith(include.name, "vtk") && layer != "app/paraview") return "VTK outside app/paraview";
     if (startsWith(include.name, "gdcm") && layer != "src/foreign") return "GDCM outside src/foreign";
+    if (startsWith(include.name, "hdf5") && layer != "src/foreign") return "HDF5 outside src/foreign";
     static const std::regex qt("^(Q[A-Z]|Qt[A-Z]).*");
     if (std::regex_match(include.name, qt) && layer != "app/gui") return "Qt outside app/gui";
     if (layer == "app/gui")
@@ -246,6 +247,7 @@ TEST_CASE("the rule itself catches what it should", "[layering]") {
     CHECK(fault({"src/render/a.cpp", 1, "epoxy/gl.h"}) != "");
     CHECK(fault({"src/volume/a.cpp", 1, "vtkImageData.h"}) != "");
     CHECK(fault({"src/volume/a.cpp", 1, "gdcmReader.h"}) != "");
+    CHECK(fault({"src/volume/a.cpp", 1, "hdf5.h"}) != "");
     CHECK(fault({"src/session/a.cpp", 1, "foreign/dicom_series.h"}) != "");
     CHECK(fault({"app/paraview/plugin/filters/a.cxx", 1, "vtkImageData.h"}) == "");
     CHECK(fault({"app/paraview/plugin/filters/a.cxx", 1, "image_io/image_file.h"}) != "");

@@ -758,9 +758,11 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
     CHECK(volumeFilePatterns() ==
-          std::vector<std::string>{"*.nrrd", "*.nhdr",   "*.mhd",  "*.mha",  "*.nii",   "*.nii.gz", "*.hdr", "*.hdr.gz",
-                                   "*.img",  "*.img.gz", "*.vti",  "*.pvti", "*.pvd",   "*.vtk",    "*.pvm", "*.dat",
-                                   "*.vvd",  "*.tif",    "*.tiff", "*.dcm",  "*.dicom", "*.ima"});
+          std::vector<std::string>{"*.nrrd",   "*.nhdr", "*.mhd",    "*.mha", "*.nii",  "*.nii.gz", "*.hdr",
+                                   "*.hdr.gz", "*.img",  "*.img.gz", "*.vti", "*.pvti", "*.pvd",    "*.vtk",
+                                   "*.pvm",    "*.dat",  "*.vvd",    "*.tif", "*.tiff", "*.dcm",    "*.dicom",
+                                   "*.ima",    "*.h5",   "*.hdf5",   "*.hdf", "*.he5",  "*.mat",    "*.nc",
+                                   "*.nc4",    "*.cdf",  "*.netcdf", "*.mrml"});
 }
 
 TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {

@@ -159,7 +159,7 @@ private:
 
     void requireFilters(const Hdf5Handle& how, const ArrayVariable& variable) const;
     void requireOtherFiles(const Hdf5Handle& how, const ArrayVariable& variable) const;
-    void requireSources(const Hdf5Handle& how, const ArrayVariable& variable) const;
+    std::vector<std::string> checkSources(const Hdf5Handle& how, const ArrayVariable& variable) const;
     std::vector<std::string> checkChunks(const Hdf5Handle& data, const Hdf5Handle& how,
                                          const ArrayVariable& variable) const;
 
@@ -281,8 +281,7 @@ std::vector<std::string> Hdf5File::check(const ArrayVariable& variable) const {
     requireOtherFiles(how, variable);
     switch (H5Pget_layout(how.id())) {
     case H5D_VIRTUAL:
-        requireSources(how, variable);
-        return {};
+        return checkSources(how, variable);
     case H5D_CHUNKED:
         return checkChunks(data, how, variable);
     default:
@@ -333,11 +332,15 @@ void Hdf5File::requireOtherFiles(const Hdf5Handle& how, const ArrayVariable& var
 }
 
 /// A virtual array is put together from others; libhdf5 says nothing where they are missing.
-void Hdf5File::requireSources(const Hdf5Handle& how, const ArrayVariable& variable) const {
+std::vector<std::string> Hdf5File::checkSources(const Hdf5Handle& how, const ArrayVariable& variable) const {
     std::size_t count = 0;
     if (H5Pget_virtual_count(how.id(), &count) < 0) fail("HDF5 cannot open " + inQuotes(variable.name));
     std::set<std::pair<std::string, std::string>> seen;
+    std::uint64_t filled = 0;
     for (std::size_t n = 0; n < count; ++n) {
+        const Hdf5Handle part(H5Pget_virtual_vspace(how.id(), n));
+        const hssize_t points = H5Sget_select_npoints(part.id());
+        filled += points < 0 ? valuesIn(variable) : static_cast<std::uint64_t>(points); // below 0: without end
         std::array<char, 4096> file{}, array{};
         H5Pget_virtual_filename(how.id(), n, file.data(), file.size());
         H5Pget_virtual_dsetname(how.id(), n, array.data(), array.size());
@@ -357,6 +360,10 @@ void Hdf5File::requireSources(const Hdf5Handle& how, const ArrayVariable& variab
         if (!source) refuse("which has no array " + inQuotes(array.data()), "copy that file again");
         requireFilters(Hdf5Handle(H5Dget_create_plist(source.id())), variable);
     }
+    const std::uint64_t all = valuesIn(variable);
+    if (filled >= all) return {};
+    return {std::to_string(all - filled) + " of " + std::to_string(all) + " values of " + inQuotes(variable.name) +
+            " are in no file: they have what stands for values not written"};
 }
 
 /// What is stored can hold a chunk, before one is allocated.
