@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ranges>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "tf/change_opacities.h"
 
 namespace pellucid {
@@ -164,8 +164,7 @@ TransferFunction ramp(int count) {
 }
 
 std::optional<TransferFunction> tfFromSpec(const std::string& text) {
-    std::vector<std::string> parts;
-    for (const auto part : std::views::split(text, ':')) parts.emplace_back(part.begin(), part.end());
+    const std::vector<std::string> parts = splitAt(':', text);
     if (parts.size() < 2) return {};
     const bool isTents = parts[0] == "tents", isRamp = parts[0] == "ramp";
     if (!isTents && !isRamp) return {};
