@@ -35,7 +35,8 @@ double peakOf(const TransferFunction& tf, const Feature& f) {
 
 /// Makes x a step (two points that share it), so that its two sides can be scaled apart. α(·) stays as it is.
 void splitAt(TransferFunction& tf, double x) {
-    const auto [first, last] = std::ranges::equal_range(tf.points, x, {}, &ControlPoint::x);
+    const auto first = std::ranges::lower_bound(tf.points, x, {}, &ControlPoint::x);
+    const auto last = std::ranges::upper_bound(tf.points, x, {}, &ControlPoint::x);
     if (last - first >= 2) return;
     const bool any = first != last;
     const ControlPoint p = any ? *first : ControlPoint{x, tf.opacity(x), tf.color(x), false, {}};
