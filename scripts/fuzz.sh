@@ -38,35 +38,41 @@ cmake --build --preset fuzz --target "${programs[@]}"
 
 # Inputs are files while they are read: of a folder in memory, where there is one.
 TMPDIR=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" pellucid-fuzz-XXXXXX)
-trap 'rm -rf "$TMPDIR"' EXIT
+trap 'wait; rm -rf "$TMPDIR"' EXIT # what still runs needs the folder
 export TMPDIR
-export FUZZ_SECONDS=$seconds FUZZ_SEED=${PELLUCID_FUZZ_SEED:-1}
+seed=${PELLUCID_FUZZ_SEED:-1}
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=quarantine_size_mb=64
 # What an input may take: 5 s, 512 MiB at once, 2 GiB in all, those of the sanitizers included.
-export FUZZ_LIMITS="-timeout=5 -malloc_limit_mb=512 -rss_limit_mb=2048"
+limits=(-timeout=5 -malloc_limit_mb=512 -rss_limit_mb=2048)
 rm -rf build/fuzz/seeds
 for group in volume document; do
     [[ " ${programs[*]} " != *" fuzz_$group"@(s|_seeds)" "* ]] || "build/fuzz/bin/fuzz_${group}_seeds" build/fuzz/seeds
 done
 mkdir -p build/fuzz/corpus build/fuzz/failures build/fuzz/logs
 
-# Runs one target; 255 stops xargs.
+# Runs one target.
 fuzz() {
     local target=$1 program=build/fuzz/bin/fuzz_$1 log=build/fuzz/logs/$1.log dictionary=()
     [ ! -f "build/fuzz/seeds/$target.dict" ] || dictionary=("-dict=build/fuzz/seeds/$target.dict")
     mkdir -p "build/fuzz/corpus/$target"
-    if "$program" -seed="$FUZZ_SEED" -max_total_time="$FUZZ_SECONDS" $FUZZ_LIMITS "${dictionary[@]}" \
+    if "$program" -seed="$seed" -max_total_time="$seconds" "${limits[@]}" "${dictionary[@]}" \
         -artifact_prefix="build/fuzz/failures/$target-" "build/fuzz/corpus/$target" "build/fuzz/seeds/$target" \
         >"$log" 2>&1; then
         echo "fuzz: $target: $(sed -n 's/^Done \([0-9]*\) runs in \([0-9]*\) .*/\1 inputs in \2 s/p' "$log")," \
-            "$(grep -o 'cov: [0-9]*' "$log" | tail -1 | cut -d' ' -f2) edges, seed $FUZZ_SEED: passed"
+            "$(grep -o 'cov: [0-9]*' "$log" | tail -1 | cut -d' ' -f2) edges, seed $seed: passed"
         return 0
     fi
     local input
     input=$(sed -n 's/.*Test unit written to //p' "$log" | tail -1)
-    grep -E 'ERROR|SUMMARY|runtime error|broken promise|terminate|what\(\)|    #[0-9] ' "$log" | head -40 >&2 || tail -40 "$log" >&2
-    echo "fuzz: $target: FAILED with seed $FUZZ_SEED, see $log; again: $program $FUZZ_LIMITS ${input:-(no input was kept)}" >&2
-    return 255
+    grep -E 'ERROR|SUMMARY|runtime error|broken promise|terminate|what\(\)|    #[0-9] ' "$log" | head -16 >&2 || tail -40 "$log" >&2
+    echo "fuzz: $target: FAILED with seed $seed, see $log; again: $program ${limits[*]} ${input:-(no input was kept)}" >&2
+    return 1
 }
-export -f fuzz
-printf '%s\n' "${targets[@]}" | xargs -P 2 -I{} bash -c 'fuzz {}' || exit 1
+# Two at a time; `wait -n` ends the script with the first that fails.
+for i in "${!targets[@]}"; do
+    [ "$i" -lt 2 ] || wait -n
+    fuzz "${targets[i]}" &
+done
+for i in "${!targets[@]}"; do
+    [ "$i" -ge 2 ] || wait -n
+done

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <variant>
 
 #include "fuzz_input.h"
@@ -57,17 +58,18 @@ inline void touchOthers(const VolumeSource& source, const FileContents& contents
 }
 
 inline void openVolume(const VolumeSource& source) {
-    const bool isRead = succeeds([&] {
-        const Volume volume = loadVolume(source);
-        touch(volume);
-        const FileContents contents = contentsOf(source);
-        require(contents.dims == volume.dims() && contents.type == volume.sampleType(), "a header tells what is read");
-        require(!filesOf(source).empty(), "a volume has a file");
-        if (volume.size() > kMostVoxels) return;
-        requireSamePart(source, volume);
-        touchOthers(source, contents);
-    });
-    if (!isRead) succeeds([&] { contentsOf(source); }); // the data may be missing
+    std::optional<Volume> volume;
+    const bool isRead = succeeds([&] { volume.emplace(loadVolume(source)); });
+    FileContents contents;
+    const bool isTold = succeeds([&] { contents = contentsOf(source); }); // of a header alone: the data may be missing
+    if (!isRead) return;
+    touch(*volume);
+    require(isTold, "what can be read can be told of");
+    require(contents.dims == volume->dims() && contents.type == volume->sampleType(), "a header tells what is read");
+    require(!filesOf(source).empty(), "a volume has a file");
+    if (volume->size() > kMostVoxels) return;
+    succeeds([&] { requireSamePart(source, *volume); });
+    succeeds([&] { touchOthers(source, contents); });
 }
 
 /// Opens the input as a file of this suffix. No format of a library has it, so that no process is started.
