@@ -64,10 +64,12 @@ fuzz() {
     fi
     local input
     input=$(sed -n 's/.*Test unit written to //p' "$log" | tail -1)
-    grep -E 'ERROR|SUMMARY|runtime error|broken promise|terminate|what\(\)|    #[0-9] ' "$log" | head -16 >&2 || tail -40 "$log" >&2
-    echo "fuzz: $target: FAILED with seed $seed, see $log; again: $program ${limits[*]} ${input:-(no input was kept)}" >&2
+    grep -E 'ERROR|SUMMARY|runtime error|broken promise|terminate|what\(\)|    #[0-9] ' "$log" | head -16 >&2 || true
+    echo "fuzz: $target: FAILED with seed $seed, see $log" >&2
+    echo "fuzz: again: $program ${limits[*]} ${input:-(no input was kept)}" >&2
     return 1
 }
+
 # Two at a time; `wait -n` ends the script with the first that fails.
 for i in "${!targets[@]}"; do
     [ "$i" -lt 2 ] || wait -n
