@@ -2,5 +2,5 @@
 add_library(pellucid_warnings INTERFACE)
 target_compile_options(pellucid_warnings INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
-    -Wno-restrict # g++ 12 sees overlaps in std::string concatenation that are not there
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in std::string concatenation that are not there
     $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)

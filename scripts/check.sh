@@ -9,13 +9,14 @@
 #             damaged headers make of the readers
 #   asan-mpi  nor in blocks on ranks, nor in pellucid-mpi, its ranks killed and its files broken
 #   tsan      no race in the tests that use threads
+#   fuzz      no input that clang's libFuzzer makes up in 60 s for each of our parsers is more to them than an error
 #   zink      the tests of OpenGL with another driver: Mesa's zink over its software Vulkan
 #   tidy      clang-tidy has nothing to say of files that differ from PELLUCID_BASE (the commit before this one)
 # No check begins later than --by seconds after now, and one that still runs after --end seconds is stopped; neither is a
 # failure, and both are named. Exit status 1 where a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all=(format mpi headless headers dev asan asan-mpi tsan zink tidy)
+all=(format mpi headless headers dev asan asan-mpi tsan fuzz zink tidy)
 
 # Installs the packages of the commands that are missing: need COMMAND PACKAGE …
 need() {
@@ -97,6 +98,10 @@ check_tsan() {
         status=1
     on_display ctest --preset dev-tsan --parallel 2 -L '^gui$' -R 'job|player|played|series|[Ff]rame|cancel|while|optimiz' || status=1
     return $status
+}
+
+check_fuzz() {
+    scripts/fuzz.sh 60
 }
 
 check_zink() {

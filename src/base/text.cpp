@@ -147,6 +147,16 @@ std::vector<std::string> splitWords(std::string_view text) {
     return words;
 }
 
+std::vector<std::string> splitAt(char separator, std::string_view text) {
+    std::vector<std::string> parts;
+    if (text.empty()) return parts;
+    std::size_t begin = 0;
+    for (std::size_t end = 0; (end = text.find(separator, begin)) != std::string_view::npos; begin = end + 1)
+        parts.emplace_back(text.substr(begin, end - begin));
+    parts.emplace_back(text.substr(begin));
+    return parts;
+}
+
 std::string trimmed(std::string_view text) {
     constexpr std::string_view kBlank = " \t\r\n";
     const std::size_t begin = text.find_first_not_of(kBlank);

@@ -41,6 +41,8 @@ std::string joined(const Range& all, std::string_view between = ", ", const Text
 std::string anyOf(const std::vector<std::string>& words);
 /// Blank-separated words.
 std::vector<std::string> splitWords(std::string_view text);
+/// What stands between separators, empty parts too; of an empty text none.
+std::vector<std::string> splitAt(char separator, std::string_view text);
 std::string trimmed(std::string_view text);
 std::string lowerCase(std::string_view text);
 /// Numbers independent of the locale; the whole text must be the number. Return false otherwise, and where it is too

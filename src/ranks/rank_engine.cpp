@@ -130,12 +130,12 @@ private:
         // What no other block has a say in is measured while those are waited for.
         std::vector<std::size_t> left;
         for (std::size_t i = 0; i < pieces.size(); ++i) left.push_back(i);
-        const auto unbound = std::ranges::stable_partition(left, [&](std::size_t i) {
+        const auto unbound = std::stable_partition(left.begin(), left.end(), [&](std::size_t i) {
             return std::ranges::any_of(rays.entering, [&](const SweepRect& entering) {
                 return pieces[i].firstRow < entering.endRow && pieces[i].lastRow >= entering.firstRow;
             });
         });
-        std::size_t free = unbound.size();
+        auto free = static_cast<std::size_t>(left.end() - unbound);
         m_ranks.await([&] {
             const std::size_t some = std::min(free, static_cast<std::size_t>(threadCount()));
             run(std::span(left).last(some), {job.stop, {}});

@@ -1,6 +1,5 @@
 #include "tf/part_names.h"
 
-#include <ranges>
 #include <vector>
 
 #include "base/text.h"
@@ -27,8 +26,7 @@ bool isNumber(const std::string& word) {
 }
 
 PartName read(const std::string& name) {
-    std::vector<std::string> words;
-    for (const auto word : std::views::split(name, ' ')) words.emplace_back(word.begin(), word.end());
+    const std::vector<std::string> words = splitAt(' ', name);
     const std::size_t n = words.size();
     const auto word = [&](std::size_t fromEnd) { return fromEnd <= n ? words[n - fromEnd] : std::string(); };
     PartName part;

@@ -33,9 +33,9 @@ struct Group {
     bool empty() const { return first == last; }
 };
 Group pointsAt(const std::vector<ControlPoint>& points, double x) {
-    const auto group = std::ranges::equal_range(points, x, {}, &ControlPoint::x);
-    return {static_cast<std::size_t>(group.begin() - points.begin()),
-            static_cast<std::size_t>(group.end() - points.begin())};
+    const auto first = std::ranges::lower_bound(points, x, {}, &ControlPoint::x);
+    const auto last = std::ranges::upper_bound(points, x, {}, &ControlPoint::x);
+    return {static_cast<std::size_t>(first - points.begin()), static_cast<std::size_t>(last - points.begin())};
 }
 
 /// A point on the curve.

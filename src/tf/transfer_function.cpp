@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ranges>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "tf/change_opacities.h"
 
 namespace pellucid {
@@ -35,7 +35,8 @@ double peakOf(const TransferFunction& tf, const Feature& f) {
 
 /// Makes x a step (two points that share it), so that its two sides can be scaled apart. α(·) stays as it is.
 void splitAt(TransferFunction& tf, double x) {
-    const auto [first, last] = std::ranges::equal_range(tf.points, x, {}, &ControlPoint::x);
+    const auto first = std::ranges::lower_bound(tf.points, x, {}, &ControlPoint::x);
+    const auto last = std::ranges::upper_bound(tf.points, x, {}, &ControlPoint::x);
     if (last - first >= 2) return;
     const bool any = first != last;
     const ControlPoint p = any ? *first : ControlPoint{x, tf.opacity(x), tf.color(x), false, {}};
@@ -164,8 +165,7 @@ TransferFunction ramp(int count) {
 }
 
 std::optional<TransferFunction> tfFromSpec(const std::string& text) {
-    std::vector<std::string> parts;
-    for (const auto part : std::views::split(text, ':')) parts.emplace_back(part.begin(), part.end());
+    const std::vector<std::string> parts = splitAt(':', text);
     if (parts.size() < 2) return {};
     const bool isTents = parts[0] == "tents", isRamp = parts[0] == "ramp";
     if (!isTents && !isRamp) return {};

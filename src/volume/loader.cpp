@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <ranges>
 
 #include "base/round_numbers.h"
+#include "base/text.h"
 #include "volume/excerpt.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
@@ -126,8 +126,7 @@ RawLayout parseRawLayout(const std::string& text) {
         return UsageError(why, "raw layout " + text,
                           "give NX,NY,NZ,TYPE[,little|big], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64");
     };
-    std::vector<std::string> parts;
-    for (const auto part : std::views::split(text, ',')) parts.emplace_back(part.begin(), part.end());
+    const std::vector<std::string> parts = splitAt(',', text);
     if (parts.size() < 4 || parts.size() > 5) throw fail("the layout has " + std::to_string(parts.size()) + " parts");
     RawLayout layout;
     for (int a = 0; a < 3; ++a) {

@@ -39,3 +39,11 @@ TEST_CASE("an error is a line that can be shown", "[text]") {
     CHECK(std::string(e.what()) == "bad  [2J, /tmp/\uFFFDx, copy it");
     CHECK(e.where() == "/tmp/\uFFFDx");
 }
+
+TEST_CASE("a text is split at each separator", "[text]") {
+    using Parts = std::vector<std::string>;
+    CHECK(splitAt(',', "a,b") == Parts{"a", "b"});
+    CHECK(splitAt(',', ",a,,") == Parts{"", "a", "", ""});
+    CHECK(splitAt(',', "a") == Parts{"a"});
+    CHECK(splitAt(',', "").empty());
+}

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -87,8 +86,7 @@ std::vector<std::string> splitVectors(const std::string& text) {
 std::vector<double> vectorIn(const std::string& text, const TextHeader& header) {
     std::vector<double> numbers;
     const std::string inside = text.substr(0, text.size() - 1).erase(0, 1);
-    for (const auto word : std::views::split(inside, ','))
-        numbers.push_back(numberIn(std::string(word.begin(), word.end())));
+    for (const std::string& word : splitAt(',', inside)) numbers.push_back(numberIn(word));
     const bool areFinite = std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
     if (!text.starts_with('(') || !text.ends_with(')') || numbers.empty() || !areFinite)
         header.fail(inQuotes(text) + " is not a vector of numbers");
@@ -172,8 +170,7 @@ std::optional<Vec3> flipOfSpace(const TextHeader& header) {
 
 /// The n-th of the texts in quotes of a field.
 std::string quotedWord(const std::string& text, std::size_t n) {
-    std::vector<std::string> parts; // outside and inside quotes, in turn
-    for (const auto part : std::views::split(text, '"')) parts.emplace_back(part.begin(), part.end());
+    const std::vector<std::string> parts = splitAt('"', text); // outside and inside quotes, in turn
     return 2 * n + 2 < parts.size() ? trimmed(parts[2 * n + 1]).substr(0, 40) : std::string();
 }
 

@@ -11,7 +11,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr std::size_t kPiece = 1u << 18;
 constexpr std::size_t kMostTagBytes = 1u << 16;
 
 bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }

@@ -1,0 +1,25 @@
+// Transfer functions of our own, as files and as presets.
+#include "tf/formats/tf_json.h"
+#include "fuzz_input.h"
+#include "tf/formats/tf_file.h"
+#include "tf/presets.h"
+
+using namespace pellucid;
+using namespace pellucid::fuzz;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const InputFolder s_folder;
+    s_folder.with(data, size, ".tf.json", [](const std::string& path) {
+        succeeds([&] {
+            const TransferFunction tf = readTfFile(path);
+            const std::string again = s_folder.path("again.tf.json");
+            writeTfFile(tf, {0, 1}, again);
+            require(readTfFile(again) == tf, "a transfer function is read back as it was");
+        });
+        succeeds([&] {
+            const TfPreset preset = readPreset(path);
+            writePreset(preset.tf, preset.title, s_folder.path("again.tf.json"));
+        });
+    });
+    return 0;
+}
