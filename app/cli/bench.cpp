@@ -280,6 +280,7 @@ private:
                 label += ", " + j["iterations"].dump() + " moves";
             if (j.contains("ssim")) label += ", SSIM " + fixedText(j["ssim"], 3);
             if (j.contains("speedup")) label += ", " + fixedText(j["speedup"], 2) + "x";
+            if (r.row == BenchRow::Open) label += ", " + r.extra["file"].get<std::string>();
             if (r.row == BenchRow::OptimizeWhole) {
                 label += ", " + j["target"].get<std::string>();
                 if (j.contains("sweeps")) label += ", " + fixedText(j["sweeps"], 1) + " sweeps";
@@ -357,7 +358,7 @@ Command addBench(CLI::App& program) {
     o->scene.engine.add(*app);
     addValue(
         *app, "--only", "ROW,...", o->only, parseRows,
-        "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
+        "only these rows of the table: open, setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
         "optimize-newton, threads, optimize-whole, refine, refine-500, refine-1000, refine-direct, render, preview");
     addValue(
         *app, "--repeat", "N", o->repeat, wholeFrom(1, 1000),

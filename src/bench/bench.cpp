@@ -1,13 +1,17 @@
 #include "bench/bench.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <ctime>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <numbers>
 #include <thread>
+
+#include <unistd.h>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -18,6 +22,8 @@
 #include "render/ssim.h"
 #include "saliency/saliency_direct.h"
 #include "volume/histogram.h"
+#include "volume/loader.h"
+#include "volume/volume_writer.h"
 
 namespace pellucid {
 
@@ -97,6 +103,27 @@ struct Measurement {
     bool failed = false;
 };
 
+/// A folder for the files of the rows Open, gone with this.
+class FolderForFiles {
+public:
+    FolderForFiles() {
+        static std::atomic<int> s_count = 0;
+        m_path = std::filesystem::temp_directory_path() /
+                 ("pellucid-bench-" + std::to_string(getpid()) + "-" + std::to_string(s_count++));
+        std::filesystem::create_directories(m_path);
+    }
+    ~FolderForFiles() {
+        std::error_code ec;
+        std::filesystem::remove_all(m_path, ec);
+    }
+    FolderForFiles(const FolderForFiles&) = delete;
+    FolderForFiles& operator=(const FolderForFiles&) = delete;
+    std::string path(const std::string& name) const { return (m_path / name).string(); }
+
+private:
+    std::filesystem::path m_path;
+};
+
 /// The rows of one case. Keeps a reference to it and the options, which outlive it.
 class CaseBench {
 public:
@@ -108,6 +135,7 @@ public:
             wanted(Sweep) || wanted(Jacobian) || wanted(Optimize) || wanted(OptimizeNewton) || wanted(OptimizeWhole);
         const bool weighted = measured || wanted(Slices) || wanted(Threads);
         if (measured || wanted(Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
+        if (wanted(Open)) addOpen(job);
         if (wanted(Setup)) addSetup();
         if (wanted(Saliency)) addSaliency(Saliency, updateSaliencyFields);
         if (wanted(SaliencyDirect)) addSaliency(SaliencyDirect, updateSaliencyFieldsDirect);
@@ -168,6 +196,26 @@ private:
     }
     BenchResult row(BenchRow which, const std::string& engine, int candidates = 0) const { ///< 0: none are measured
         return row(which, engine, candidates, m_case.tf, m_case.tfName);
+    }
+
+    /// The volume as it is, and read anew from what our own writers make of it.
+    void addOpen(const JobControl& job) {
+        if (m_case.volume->elsewhere() != nullptr) return; // no process has all of it
+        m_files.emplace();
+        for (const char* name : {"raw.mhd", "gzip.nrrd", "vtk.vti", "stack.tif", "image.zarr"}) {
+            const std::string path = m_files->path(name);
+            writeVolume(*m_case.volume, path, {}, {job.stop, {}});
+            BenchResult r = row(BenchRow::Open, "cpu");
+            r.tf.reset();
+            r.features.reset();
+            r.extra = {{"file", name}};
+            addWith(1, r, sampleBytes(), [path](BenchResult&, const JobControl& j) {
+                VolumeSource source;
+                source.path = path;
+                source.downsample = 1;
+                loadVolume(source, j);
+            });
+        }
     }
 
     void addSetup() {
@@ -402,6 +450,7 @@ private:
     std::unique_ptr<VisibilityEngine> m_engine;   ///< null where no row needs one
     std::unique_ptr<VisibilityEngine> m_slices;   ///< made when first needed
     std::unique_ptr<VisibilityEngine> m_threaded; ///< of the rows Threads
+    std::optional<FolderForFiles> m_files;        ///< of the rows Open
     std::optional<Histogram> m_histogram;
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;

@@ -21,6 +21,7 @@
 namespace pellucid {
 
 enum class BenchRow {
+    Open, ///< the volume from files of several formats, which the cache of the system holds
     Setup,
     Saliency,
     SaliencyDirect,
@@ -39,8 +40,8 @@ enum class BenchRow {
     Preview ///< the same pictures as the cpu renderer draws them while the hand moves
 };
 template <>
-inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices",
-                                                     "jacobian", "optimize", "optimize-newton", "threads",
+inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "open", "setup", "saliency", "saliency-direct", "sweep",
+                                                     "slices", "jacobian", "optimize", "optimize-newton", "threads",
                                                      "optimize-whole", "refine", "refine-500", "refine-1000",
                                                      "refine-direct", "render", "preview");
 

@@ -66,9 +66,8 @@ struct VolumeSource {
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
-/// Files: NRRD/NHDR, MetaImage, NIfTI, VTK image data (VTI, PVTI) and collections of files (PVD); DICOM, pictures, HDF5
-/// and NetCDF, in processes of their own; headerless raw. Of a
-/// file with several time steps VolumeSource::step is read.
+/// Files: those of formats/, told by what is in them, else by suffix; headerless raw. Of a file with several time steps
+/// VolumeSource::step is read.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
 
 /// In a process that is one of several, loadVolume() gives it its part by this. `load` may call loadHere(); empty:

@@ -65,9 +65,9 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         const double memcpyRate = j["memcpy"][static_cast<std::size_t>(threads - 1)]["gb_per_s"];
         CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
     }
-    CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
-                                         "optimize-newton", "threads", "optimize-whole", "refine", "refine-500",
-                                         "refine-1000", "refine-direct", "render", "preview"});
+    CHECK(names == std::set<std::string>{"open", "setup", "saliency", "saliency-direct", "sweep", "jacobian",
+                                         "optimize", "optimize-newton", "threads", "optimize-whole", "refine",
+                                         "refine-500", "refine-1000", "refine-direct", "render", "preview"});
 
     for (const json& row : rowsNamed(j, "preview")) CHECK(row["ssim"].get<double>() > 0.95);
 

@@ -13,6 +13,7 @@
 #include <QTemporaryDir>
 #include <QToolButton>
 
+#include "dialogs/raw_dialog.h"
 #include "dialogs/series_choice_dialog.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
@@ -357,6 +358,26 @@ TEST_CASE("the series of a study for the guide", "[.pictures][.seriespicture]") 
     dialog.show();
     QTest::qWait(3000); // for the pictures
     REQUIRE(dialog.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + "/series_dialog.png"));
+}
+
+TEST_CASE("the dialog for files without a header for the guide", "[.pictures][.rawpicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    const QTemporaryDir folder;
+    VolumeSource source;
+    source.path = "sample:knee";
+    source.sampleSize = 128;
+    const Volume knee = loadVolume(source);
+    const QString path = folder.filePath("scan.raw");
+    std::ofstream out(path.toStdString(), std::ios::binary);
+    for (std::size_t i = 0; i < knee.size(); ++i) {
+        const auto value = static_cast<std::uint16_t>(4000 * knee.intensity(i));
+        out.write(reinterpret_cast<const char*>(&value), 2);
+    }
+    out.close();
+    RawDialog dialog(QStringList{path});
+    dialog.show();
+    QTest::qWait(3000); // for the guesses, and the picture
+    REQUIRE(dialog.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + "/raw_dialog.png"));
 }
 
 TEST_CASE("a picture of an overlay", "[.pictures]") {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
 #include "volume/volume_writer.h"
@@ -138,4 +139,34 @@ TEST_CASE("a volume that cannot be written leaves nothing", "[writer]") {
     for (const std::string& suffix : kSuffixes)
         CHECK_THROWS_AS(writeVolume(volume, folder.path("a" + suffix), {}, {stop.get_token(), {}}), Cancelled);
     CHECK(folder.fileCount() == 0);
+}
+
+TEST_CASE("a disk that fills up leaves nothing behind, whatever the format", "[writer]") {
+    const TempFolder folder;
+    Geometry g;
+    g.dims = {48, 40, 36};
+    std::vector<std::uint16_t> noise(voxelCount(g.dims)); // which cannot be packed
+    std::uint32_t state = 5;
+    for (std::uint16_t& value : noise) {
+        state = state * 1664525u + 1013904223u;
+        value = static_cast<std::uint16_t>(state >> 16);
+    }
+    const Volume volume(g, SampleArray<std::uint16_t>(std::move(noise)));
+    for (const std::string& suffix : kSuffixes)
+        for (const std::size_t most : {0, 10, 1000, 20'000}) {
+            CAPTURE(suffix, most);
+            const FullDisk disk(most);
+            CHECK_THROWS_WITH(writeVolume(volume, folder.path("a" + suffix)), Contains("cannot write the file"));
+            CHECK(folder.fileCount() == 0);
+        }
+    // A name as long as names can be, and one that is longer.
+    const std::string longest(255 - 5, 'n');
+    for (const std::string& suffix : {std::string(".nrrd"), std::string(".zarr")}) {
+        CHECK(writeVolume(volume, folder.path(longest + suffix)).empty());
+        CHECK(load(folder.path(longest + suffix)).samples() == volume.samples());
+        CHECK_THROWS_WITH(writeVolume(volume, folder.path(longest + "n" + suffix)), Contains("shorter name"));
+    }
+    CHECK(folder.fileCount() == 2);
+    // A folder is not replaced: something else may be in it.
+    CHECK_THROWS_WITH(writeVolume(volume, folder.path(longest + ".zarr")), Contains("a folder has this name"));
 }

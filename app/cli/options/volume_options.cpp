@@ -60,7 +60,7 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     addValue(app, "--frame", "N", frame, wholeFrom(0, std::numeric_limits<int>::max()),
              "the frame to work on, from 0, of those that --frames selects (default: the session's, else 0)", kGroup);
     addValue(app, "--array", "NAME", array, anyText,
-             "array of a file with several (default: its active scalars, else the first)", kGroup);
+             "array of a file with several (default: its active scalars, else the largest or the first)", kGroup);
     addValue(app, "--series", "NAME", array, anyText,
              "series of a folder of DICOM files: its name, number or UID (default: the one with the most slices)",
              kGroup);
