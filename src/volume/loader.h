@@ -66,7 +66,7 @@ struct VolumeSource {
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
-/// Files: NRRD/NHDR, MetaImage, NIfTI, VTK image data (VTI, PVTI) and collections of files (PVD); headerless raw. Of a
+/// Files: those of formats/, told by what is in them, else by suffix; headerless raw. Of a
 /// file with several time steps VolumeSource::step is read.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
 

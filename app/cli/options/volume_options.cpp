@@ -44,7 +44,8 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     m_command = app.get_name();
     app.add_option_function<std::string>(
            "VOLUME", [this](const std::string& text) { path = text; },
-           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVTI, PVD), DICOM, TIFF or (with --raw) headerless file, a "
+           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVTI, PVD, VTK), PVM, Voreen or Inviwo (DAT, VVD), DICOM, TIFF "
+           "or (with --raw) headerless file, a "
            "folder of "
            "DICOM files or pictures, or sample:NAME; a series: "
            "a file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
