@@ -235,6 +235,39 @@ def pvti_seeds():
                  b"<Piece Extent=\"0 1 0 2 1 3\" Source=\"step.vti\"/>\n</PImageData>\n</VTKFile>\n")]
 
 
+def vtk(binary, body):
+    grid = b"DATASET STRUCTURED_POINTS\nDIMENSIONS 2 3 4\nSPACING 1 2 3\nORIGIN 5 6 7\n"
+    return b"# vtk DataFile Version 3.0\nt\n%s\n%sPOINT_DATA 24\n%s" % (b"BINARY" if binary else b"ASCII", grid, body)
+
+
+def vtk_seeds():
+    scalars = b"SCALARS density %s 1\nLOOKUP_TABLE default\n"
+    field = b"FIELD FieldData 2\na 1 24 int\n%s\nb 1 24 float\n%s\n" % (text_data(24), text_data(24))
+    return [Seed(vtk(False, scalars % b"int"), text_data(24)), Seed(vtk(True, scalars % b"short"), short_data(">")),
+            Seed(vtk(True, b"VECTORS v float\n"), float_data(">") * 3), Seed(vtk(False, field)),
+            Seed(vtk(True, b"COLOR_SCALARS c 1\n"), VALUES)]
+
+
+def pvm_seeds():
+    return [Seed(b"PVM\n2 3 4\n1\n", VALUES), Seed(b"PVM2\n2 3 4\n1 2 3\n2\n", short_data(">")),
+            Seed(b"PVM3\n2 3 4\n1 2 3\n1\n", VALUES + b"a\0b\0c\0d\0")]
+
+
+def dat_seeds():
+    return [Seed(b"ObjectFileName: data.raw\nTaggedFileName: ---\nResolution: 2 3 4\nSliceThickness: 1 2 3\n"
+                 b"Format: UCHAR\nObjectModel: I\n"),
+            Seed(b"RawFile: data.raw\nResolution: 2 3 4\nFormat: UINT8\nBasisVector1: 2 0 0\nBasisVector2: 0 3 0\n"
+                 b"BasisVector3: 0 0 4\nOffset: 1 2 3\nWorldVector1: 1 0 0 0\nDataRange: 0 255\nValueRange: 0 1\n")]
+
+
+def vvd_seeds():
+    return [Seed(b"<?xml version=\"1.0\" ?>\n<VoreenData version=\"1\">\n<Volumes>\n<Volume>\n"
+                 b"<RawData filename=\"data.raw\" format=\"uint8\" x=\"2\" y=\"3\" z=\"4\" />\n<MetaData>\n"
+                 b"<MetaItem name=\"Spacing\" type=\"Vec3MetaData\">\n<value x=\"1\" y=\"2\" z=\"3\" />\n</MetaItem>\n"
+                 b"<MetaItem name=\"RealWorldMapping\">\n<value scale=\"2\" offset=\"1\" unit=\"\" />\n</MetaItem>\n"
+                 b"</MetaData>\n</Volume>\n</Volumes>\n</VoreenData>\n")]
+
+
 # suffix: seeds, lines to insert (None: a binary header)
 FORMATS = {
     "nrrd": (".nrrd", nrrd_seeds, NRRD_LINES),
@@ -246,6 +279,12 @@ FORMATS = {
     "vti": (".vti", vti_seeds, XML_LINES),
     "pvti": (".pvti", pvti_seeds, XML_LINES),
     "pvd": (".pvd", pvd_seeds, XML_LINES),
+    "vtk": (".vtk", vtk_seeds, [b"METADATA", b"LOOKUP_TABLE t 3", b"EXTENT 0 1 0 2 0 3", b"CELL_DATA 6", b"POINT_DATA 24",
+                                b"FIELD f 99999999", b"SCALARS a bit", b"TENSORS t double"]),
+    "pvm": (".pvm", pvm_seeds, [b"# comment", b"2 3 4", b"1", b"1e30 1 1"]),
+    "dat": (".dat", dat_seeds, [b"ByteOffset: 9", b"Sequences: 2", b"ObjectModel: RGBA", b"ByteOrder: BigEndian",
+                                b"RawFile: pipe", b"TransformMatrix: row0 1 2 3 4", b"Spacing: 1 1 1e-40"]),
+    "vvd": (".vvd", vvd_seeds, XML_LINES),
 }
 
 

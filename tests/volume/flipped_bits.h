@@ -112,6 +112,12 @@ inline std::vector<PackedFile> packedFiles(int side) {
             add(std::string("VTK zlib, ") + how + (block == one.size() ? ", one block" : ", blocks"), ".vti",
                 file.substr(0, begin), packed, 1, file.substr(begin + packed.size()));
         }
+    Style lzma{Place::Raw, true, false, false, std::size_t{1} << 12, Style::Packer::Lzma};
+    const std::string xz = stored(lzma, one);
+    const std::string ofLzma =
+        vti(lzma, {{"type=\"Int16\" Name=\"a\"", "", one}}, "", "WholeExtent=\"" + extent + "\"", extent);
+    const std::size_t xzBegin = ofLzma.find(xz);
+    add("VTK LZMA, blocks", ".vti", ofLzma.substr(0, xzBegin), xz, 1, ofLzma.substr(xzBegin + xz.size()));
     // Halves that share a layer.
     const Style style{Place::Raw, true, false, false, std::size_t{1} << 12};
     const std::size_t half = static_cast<std::size_t>(side) / 2, layer = one.size() / static_cast<std::size_t>(side);

@@ -128,7 +128,7 @@ TEST_CASE("PVM reads in its three versions", "[pvm]") {
     CHECK_THAT(read("PVM\n3 2 1\n1\n" + data).notices.at(0), Contains("6 bytes more"));
 }
 
-TEST_CASE("two bytes of a PVM voxel are one value, the high one first; three are a colour", "[pvm]") {
+TEST_CASE("two bytes of a PVM voxel are one value, the high one first, and three are a colour", "[pvm]") {
     const TempFolder folder;
     using namespace std::string_literals;
     const std::string path = folder.write("a.pvm", "PVM\n2 1 1\n2\n\x01\x02\xff\x00"s);

@@ -346,7 +346,8 @@ TEST_CASE("damaged blocks of LZ4 and LZMA are refused", "[vtk][bad-input]") {
                           data = begin + 9 * 8; // three sizes, and one of each block
         CHECK_THAT(errorOfBytes(good.substr(0, data + 3)), Contains("longer than the file"));
         std::string other = good;
-        other[data + 1] = static_cast<char>(0xff);
+        // LZ4 has no checksum: what can be found is a copy from before the beginning.
+        other[data + 2] = static_cast<char>(0xff);
         CHECK_THAT(errorOfBytes(other), Contains("damaged") || Contains("ends"));
         other = good;
         other[begin + 8 + 5] = 1; // blocks of more than any that LZ4 may have
