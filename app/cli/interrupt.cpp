@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <ctime>
+#include <system_error>
 #include <thread>
 
 #include <pthread.h>
@@ -54,7 +55,11 @@ void installInterrupt() {
     // A shell starts background jobs with SIGINT ignored; we want `kill -INT` to work there too.
     std::signal(SIGINT, SIG_DFL);
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
-    std::thread(watch).detach();
+    try {
+        std::thread(watch).detach();
+    } catch (const std::system_error&) { // no more threads: then a signal ends the program as it ends others
+        pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    }
 }
 
 std::stop_token interruptToken() { return source().get_token(); }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -170,6 +171,10 @@ Outcome failureOf(const std::exception_ptr& thrown, const std::string& where) {
     } catch (const std::filesystem::filesystem_error& e) {
         return fail(1, e.code().message() + ", " + e.path1().string() + ", check permissions and space");
     } catch (const std::exception& e) {
+        // The threads' library has no exception of its own for this.
+        if (std::string_view(e.what()).find("pthread_create") != std::string_view::npos)
+            return fail(1, "the system starts no more threads for this program, " + where +
+                               ", raise the limits on processes and memory (ulimit -u, -v), or give --threads 1");
         return fail(1, std::string("unexpected failure (") + e.what() + "), " + where +
                            ", please report it with the command line");
     } catch (...) {

@@ -1,5 +1,6 @@
-// pellucid-reader, pellucid-image-reader and pellucid-array-reader: each reads files of formats whose library it has, for the program that has
-// started it (volume/process/reader_process.h). Its standard input says what to read; voxels go to the file number 3.
+// pellucid-reader, pellucid-image-reader and pellucid-array-reader: each reads files of formats whose library it has,
+// for the program that has started it (volume/process/reader_process.h). Its standard input says what to read; voxels
+// go to the file number 3.
 #include <algorithm>
 #include <cstdint>
 #include <iostream>

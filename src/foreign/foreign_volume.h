@@ -39,8 +39,8 @@ std::unique_ptr<ForeignVolume> openForeign(const std::string& path, const std::s
 
 /// What has to be readable to open a path: the folder that its files are in.
 std::string folderToRead(const std::string& path);
-/// Copies the voxels of a box that lie in a slice: `slice` has `size` voxels of `bytesPerVoxel` bytes each. Returns what
-/// of `to` is left.
+/// Copies the voxels of a box that lie in a slice: `slice` has `size` voxels of `bytesPerVoxel` bytes each. Returns
+/// what of `to` is left.
 std::span<std::byte> copyFromSlice(std::span<const std::byte> slice, const glm::ivec2& size, std::size_t bytesPerVoxel,
                                    const VoxelRegion& region, std::span<std::byte> to);
 /// Of a file; 0 where it is not there.

@@ -48,8 +48,7 @@ std::vector<std::string> ExcerptPlan::notices() const {
         all.push_back("downsampled by " + std::to_string(excerpt.factor) + " to " + dimsText(dims) + " of " +
                       dimsText(size) + " voxels");
     if (size != excerpt.fullDims)
-        all.push_back("a region of " + dimsText(size) + " of " + dimsText(excerpt.fullDims) +
-                      " voxels is shown");
+        all.push_back("a region of " + dimsText(size) + " of " + dimsText(excerpt.fullDims) + " voxels is shown");
     return all;
 }
 

@@ -37,8 +37,8 @@ bool mayHoldSeveral(const std::string& path);
 /// Error as loadVolume() does.
 Volume loadMiddleSlice(const VolumeSource& source, const JobControl& job = {});
 
-/// Whether a reader takes files of this name, whatever is in them; or what is in them, under a name that tells nothing. Not the part of a pair that has
-/// no header.
+/// Whether a reader takes files of this name, whatever is in them; or what is in them, under a name that tells nothing.
+/// Not the part of a pair that has no header.
 bool hasVolumeSuffix(const std::string& path);
 
 /// Whether `path` is a file of which only its user can tell how its bytes lie: neither name nor content says what it

@@ -104,7 +104,8 @@ void SaveController::addActions() {
              tr("The curve in its colours, over the histogram"), [this] { chooseTfDrawing(); });
     menu.separate();
     menu.add("saveVolumeAction", tr("Save vo&lume as…"), {},
-             tr("The data that is shown, as NRRD, MetaImage, NIfTI, VTK image data, TIFF or OME-Zarr"), [this] { chooseVolume(); });
+             tr("The data that is shown, as NRRD, MetaImage, NIfTI, VTK image data, TIFF or OME-Zarr"),
+             [this] { chooseVolume(); });
     menu.separate();
     menu.add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), [this] { chooseImage(); },
              {.inToolBar = true});

@@ -126,7 +126,8 @@ RawDialog::RawDialog(const QStringList& paths, QWidget* parent)
     connect(m_endian, &QComboBox::currentIndexChanged, this, &RawDialog::check);
     connect(m_skip, &QDoubleSpinBox::valueChanged, this, &RawDialog::check);
     connect(m_guesses, &QComboBox::activated, this, [this](int index) {
-        if (index >= 0 && index < static_cast<int>(m_layouts.size())) show(m_layouts[static_cast<std::size_t>(index)]);
+        if (index >= 0 && index < static_cast<int>(m_layouts.size()))
+            setLayoutOfFile(m_layouts[static_cast<std::size_t>(index)]);
     });
     connect(&m_look, &JobBase::failed, this, [this](const Error& error) {
         m_guesses->setItemText(0, tr("none"));
@@ -191,7 +192,7 @@ QImage RawDialog::pictureOf(const VolumeSource& source, const JobControl& job) {
     }
 }
 
-void RawDialog::show(const RawLayout& layout) {
+void RawDialog::setLayoutOfFile(const RawLayout& layout) {
     m_type->setCurrentIndex(static_cast<int>(layout.type));
     m_endian->setCurrentIndex(layout.bigEndian ? 1 : 0);
     m_skip->setValue(static_cast<double>(layout.skipBytes));
@@ -220,7 +221,7 @@ void RawDialog::takeLook(const RawLook& look) {
     m_guesses->setEnabled(!m_layouts.empty());
     if (m_layouts.empty()) m_guesses->addItem(tr("no layout fits: is there a header to skip?"));
     // What the user has set stays.
-    if (!m_isTouched && !m_layouts.empty()) show(m_layouts.front());
+    if (!m_isTouched && !m_layouts.empty()) setLayoutOfFile(m_layouts.front());
     check();
 }
 

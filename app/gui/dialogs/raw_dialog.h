@@ -34,7 +34,7 @@ private:
     void lookAtSizes(const QStringList& paths);
     QString headOf(const QStringList& paths) const; ///< what is opened, as rich text
     void check();
-    void show(const RawLayout& layout);
+    void setLayoutOfFile(const RawLayout& layout);
     void takeLook(const RawLook& look);
     static QImage pictureOf(const VolumeSource& source, const JobControl& job);
 
