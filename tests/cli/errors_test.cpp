@@ -195,7 +195,7 @@ TEST_CASE("wrong values of bench are wrong usage", "[cli][errors]") {
     const Workshop w;
     const Words bench = Words{"bench"} + kShells;
     for (const char* rows : {"paint", "", "sweep,", "sweep;render", "Sweep"})
-        checkFails(w, bench + Words{"--only", rows}, 2, "give setup, saliency, saliency-direct, sweep");
+        checkFails(w, bench + Words{"--only", rows}, 2, "give open, setup, saliency, saliency-direct, sweep");
     for (const char* repeat : {"0", "-1", "many", "1001"})
         checkFails(w, bench + Words{"--repeat", repeat}, 2, "--repeat");
     checkFails(w, bench + Words{"--threads", "0"}, 2, "--threads");
