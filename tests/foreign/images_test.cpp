@@ -1,4 +1,4 @@
-// TIFF stacks and folders of pictures through pellucid-image-reader.
+// TIFF stacks and folders of pictures through pellucid-tiff-reader and pellucid-image-reader.
 #include <catch2/catch.hpp>
 
 #include <cstring>

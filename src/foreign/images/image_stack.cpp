@@ -21,7 +21,8 @@ FileError failure(const std::string& path, const std::string& what) {
 
 } // namespace
 
-ImageStack::ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before) : m_path(path) {
+ImageStack::ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before, OpenPictures open)
+    : m_open(open), m_path(path) {
     if (!wanted.empty())
         throw UsageError("there is no array " + inQuotes(wanted), path, "pictures have no names: leave it out");
     std::error_code ec;
@@ -30,7 +31,7 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
     std::size_t passedOver = 0;
     for (std::size_t f = 0; f < m_files.size(); ++f) {
         before(bytesOfFile(m_files[f]));
-        const auto file = openPictures(m_files[f]);
+        const auto file = m_open(m_files[f]);
         for (int page = 0; page < kMostPages && file->goTo(page); ++page) {
             const PageShape shape = file->shape();
             if (m_pages.empty()) {
@@ -119,7 +120,7 @@ void ImageStack::read(int step, const ReaderBox& box, std::span<std::byte> voxel
     for (int z = region.lo.z; z < region.hi.z; ++z) {
         const Page& page = pageAt(z, box.component, step);
         if (opened != page.file) {
-            file = openPictures(m_files[page.file]);
+            file = m_open(m_files[page.file]);
             opened = page.file;
         }
         before(slice.size());

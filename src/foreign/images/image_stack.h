@@ -1,4 +1,4 @@
-// Pictures as slices of a volume: TIFF files of many pages, and folders of pictures. Runs in
+// Pictures as slices of a volume: TIFF files of many pages, and folders of pictures. Runs in pellucid-tiff-reader and
 // pellucid-image-reader only.
 #pragma once
 
@@ -11,11 +11,14 @@
 
 namespace pellucid {
 
+/// Opens a file of pictures; throws FileError.
+using OpenPictures = std::unique_ptr<PictureFile> (*)(const std::string& path);
+
 class ImageStack final : public ForeignVolume {
 public:
     /// `path`: a TIFF file, or a folder of pictures of one size in the order in which people count. `wanted` has to be
     /// empty. Throws FileError for what cannot be read, or where pictures are not alike.
-    ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before);
+    ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before, OpenPictures open);
 
     FileContents contents() const override;
     std::vector<std::string> files() const override { return m_files; }
@@ -33,6 +36,7 @@ private:
     const Page& pageAt(int slice, int channel, int step) const;
     void putInOrder();
 
+    OpenPictures m_open;
     std::string m_path;
     std::vector<std::string> m_files;
     std::vector<Page> m_pages; ///< as they follow each other

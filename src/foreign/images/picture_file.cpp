@@ -9,21 +9,15 @@
 #include <optional>
 #include <vector>
 
-#include <OpenImageIO/imageio.h>
 #include <tiffio.h>
 #include <zlib.h>
 
 #include "base/text.h"
-#include "volume/formats/content.h"
 #include "volume/formats/file_check.h"
 
 namespace pellucid {
 
 namespace {
-
-FileError failure(const std::string& path, const std::string& what, const std::string& why = "") {
-    return {what + (why.empty() ? "" : " (" + why.substr(0, 300) + ")"), path, "copy or write the file again"};
-}
 
 /// What libtiff said last.
 std::string& tiffComplaint() {
@@ -43,7 +37,7 @@ public:
         TIFFSetErrorHandler(keepComplaint);
         TIFFSetWarningHandler(nullptr);
         m_file = TIFFOpen(path.c_str(), "rm"); // not mapped: a page beyond the end would end the process
-        if (m_file == nullptr) throw failure(path, "this TIFF file cannot be read", tiffComplaint());
+        if (m_file == nullptr) throw pictureFailure(path, "this TIFF file cannot be read", tiffComplaint());
     }
     ~TiffFile() override { TIFFClose(m_file); }
     TiffFile(const TiffFile&) = delete;
@@ -69,7 +63,8 @@ public:
         TIFFGetField(m_file, TIFFTAG_IMAGELENGTH, &height);
         constexpr std::uint32_t kMost = 1u << 30;
         if (width < 1 || height < 1 || width > kMost || height > kMost)
-            throw failure(m_path, "a page has " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+            throw pictureFailure(m_path,
+                                 "a page has " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
         PageShape shape;
         shape.width = static_cast<int>(width);
         shape.height = static_cast<int>(height);
@@ -86,8 +81,8 @@ public:
             {{32, SAMPLEFORMAT_IEEEFP}, ValueType::F32}, {{64, SAMPLEFORMAT_IEEEFP}, ValueType::F64}};
         const auto type = types.find({bits, format});
         if (type == types.end() || shape.samples < 1 || shape.samples > 1000)
-            throw failure(m_path, "pixels of " + std::to_string(shape.samples) + " samples of " + std::to_string(bits) +
-                                      " bits are not supported");
+            throw pictureFailure(m_path, "pixels of " + std::to_string(shape.samples) + " samples of " +
+                                             std::to_string(bits) + " bits are not supported");
         shape.type = type->second;
         return shape;
     }
@@ -106,10 +101,11 @@ public:
             TIFFGetFieldDefaulted(m_file, TIFFTAG_ROWSPERSTRIP, &tileHeight);
             tileHeight = std::min(tileHeight, height);
         }
-        if (tileWidth < 1 || tileHeight < 1) throw failure(m_path, "a page has tiles without pixels");
+        if (tileWidth < 1 || tileHeight < 1) throw pictureFailure(m_path, "a page has tiles without pixels");
         const std::size_t pixel = sample * static_cast<std::size_t>(inPlane);
         const auto tileBytes = static_cast<std::size_t>(isTiled ? TIFFTileSize64(m_file) : TIFFStripSize64(m_file));
-        if (tileBytes < pixel * tileWidth * tileHeight) throw failure(m_path, "a page has tiles of a wrong size");
+        if (tileBytes < pixel * tileWidth * tileHeight)
+            throw pictureFailure(m_path, "a page has tiles of a wrong size");
         std::vector<char> tile(tileBytes);
         std::uint32_t number = 0;
         for (int plane = 0; plane < planes; ++plane)
@@ -122,7 +118,8 @@ public:
                     const tmsize_t got = isTiled ? TIFFReadEncodedTile(m_file, number, tile.data(), wanted)
                                                  : TIFFReadEncodedStrip(m_file, number, tile.data(), wanted);
                     if (got < wanted)
-                        throw failure(m_path, "page " + std::to_string(m_page) + " cannot be read", tiffComplaint());
+                        throw pictureFailure(m_path, "page " + std::to_string(m_page) + " cannot be read",
+                                             tiffComplaint());
                     for (std::uint32_t row = 0; row < rows; ++row)
                         put(to, {x, y + row}, columns, tile.data() + pixel * tileWidth * row, page, plane, pixel);
                 }
@@ -169,7 +166,7 @@ private:
             status = inflate(&stream, Z_NO_FLUSH);
         }
         inflateEnd(&stream);
-        if (status != Z_STREAM_END) throw failure(m_path, "page " + std::to_string(m_page) + " is damaged");
+        if (status != Z_STREAM_END) throw pictureFailure(m_path, "page " + std::to_string(m_page) + " is damaged");
     }
     /// A part of a row, of all samples or of those of one plane.
     static void put(std::span<std::byte> to, std::array<std::uint32_t, 2> at, std::uint32_t columns, const char* from,
@@ -190,38 +187,11 @@ private:
     int m_page = 0;
 };
 
-class OtherFile final : public PictureFile {
-public:
-    explicit OtherFile(const std::string& path) : m_path(path) {
-        OIIO::attribute("threads", 1);
-        OIIO::ImageSpec asked;
-        asked["oiio:UnassociatedAlpha"] = 1; // numbers as they are stored
-        asked["oiio:RawColor"] = 1;
-        m_file = OIIO::ImageInput::open(path, &asked);
-        if (!m_file) throw failure(path, "this picture cannot be read", OIIO::geterror());
-    }
-    bool goTo(int page) override { return page == 0; }
-    PageShape shape() override {
-        const OIIO::ImageSpec& spec = m_file->spec();
-        if (spec.width < 1 || spec.height < 1 || spec.depth > 1 ||
-            (spec.format != OIIO::TypeDesc::UINT8 && spec.format != OIIO::TypeDesc::UINT16))
-            throw failure(m_path, "pictures of this kind are not supported");
-        return {spec.width, spec.height, spec.nchannels,
-                spec.format == OIIO::TypeDesc::UINT8 ? ValueType::U8 : ValueType::U16};
-    }
-    void read(std::span<std::byte> to) override {
-        const PageShape page = shape();
-        const OIIO::TypeDesc type = page.type == ValueType::U8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
-        if (!m_file->read_image(0, 0, 0, page.samples, type, to.data()) || m_file->has_error())
-            throw failure(m_path, "this picture cannot be read", m_file->geterror());
-    }
-
-private:
-    std::string m_path;
-    std::unique_ptr<OIIO::ImageInput> m_file;
-};
-
 } // namespace
+
+FileError pictureFailure(const std::string& path, const std::string& what, const std::string& why) {
+    return {what + (why.empty() ? "" : " (" + why.substr(0, 300) + ")"), path, "copy or write the file again"};
+}
 
 std::uint64_t bytesOf(const PageShape& shape) {
     return static_cast<std::uint64_t>(shape.width) * static_cast<std::uint64_t>(shape.height) *
@@ -234,9 +204,6 @@ std::string textOf(const PageShape& shape) {
            std::to_string(8 * bytesPerValue(shape.type)) + " bits";
 }
 
-std::unique_ptr<PictureFile> openPictures(const std::string& path) {
-    if (describeContent(fileHead(path, 1024)) == "a TIFF image") return std::make_unique<TiffFile>(path);
-    return std::make_unique<OtherFile>(path);
-}
+std::unique_ptr<PictureFile> openTiff(const std::string& path) { return std::make_unique<TiffFile>(path); }
 
 } // namespace pellucid

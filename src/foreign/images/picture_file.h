@@ -1,4 +1,4 @@
-// A file of pictures, page by page: TIFF by libtiff, which tells what cannot be read; all others by OpenImageIO.
+// A file of pictures, page by page: TIFF by libtiff, which tells what cannot be read.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,10 @@ public:
     virtual double pixelsPerUnit([[maybe_unused]] int axis) { return 0; } ///< 0: not known
 };
 
+/// Of a picture that cannot be read, and what its library says.
+FileError pictureFailure(const std::string& path, const std::string& what, const std::string& why = "");
+
 /// Throws FileError.
-std::unique_ptr<PictureFile> openPictures(const std::string& path);
+std::unique_ptr<PictureFile> openTiff(const std::string& path);
 
 } // namespace pellucid

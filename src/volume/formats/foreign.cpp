@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *kOfDicom = "pellucid-reader", *kOfImages = "pellucid-image-reader",
-                     *kOfArrays = "pellucid-array-reader";
+constexpr const char *kOfDicom = "pellucid-reader", *kOfTiff = "pellucid-tiff-reader",
+                     *kOfImages = "pellucid-image-reader", *kOfArrays = "pellucid-array-reader";
 
 ReaderRequest requestOf(const VolumeSource& source, const char* program) {
     ReaderRequest request;
@@ -27,6 +27,8 @@ ReaderRequest requestOf(const VolumeSource& source, const char* program) {
     request.step = source.step;
     return request;
 }
+
+bool isTiffName(const std::string& suffix) { return suffix == ".tif" || suffix == ".tiff"; }
 
 /// Throws FileError for a file that is clearly something else, whatever its suffix promises.
 ReaderRequest dicomRequest(const VolumeSource& source) {
@@ -41,7 +43,10 @@ ReaderRequest imageRequest(const VolumeSource& source) {
         const std::string head = fileHead(source.path, 1024);
         if (describeContent(head) != kTiffContent) throw notOfFormat("a TIFF image", source.path, head);
     }
-    return requestOf(source, kOfImages);
+    // OpenImageIO takes long to load: TIFF need not wait for it.
+    const std::vector<std::string> images = isFolder(source.path) ? imagesIn(source.path) : std::vector<std::string>{};
+    const bool isTiff = images.empty() || isTiffName(volumeSuffix(images.front()));
+    return requestOf(source, isTiff ? kOfTiff : kOfImages);
 }
 /// HDF5 may stand behind anything: the reader tells what is none.
 ReaderRequest arrayRequest(const VolumeSource& source) {
@@ -96,8 +101,6 @@ bool hasSeveralPages(const std::string& path) {
     in.read(head.data(), static_cast<std::streamsize>(offset));
     return in && number(head.data(), offset) != 0;
 }
-
-bool isTiffName(const std::string& suffix) { return suffix == ".tif" || suffix == ".tiff"; }
 
 } // namespace
 

@@ -19,7 +19,7 @@ struct ReaderRequest {
         List,     ///< answered by the names of the files that hold the voxels
         Read      ///< answered by a ReaderLayout; the voxels follow once it has been told to go on
     };
-    std::string program; ///< that is asked: "pellucid-reader", "pellucid-image-reader" or "pellucid-array-reader"
+    std::string program; ///< that is asked: "pellucid-reader", "pellucid-tiff-reader", …
     Task task = Task::Describe;
     std::string path;  ///< a file or a folder
     std::string array; ///< the series, image or array that is wanted; empty: the largest

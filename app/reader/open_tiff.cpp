@@ -1,0 +1,11 @@
+// Of pellucid-tiff-reader.
+#include "foreign/images/image_stack.h"
+
+namespace pellucid {
+
+std::unique_ptr<ForeignVolume> openForeign(const std::string& path, const std::string& wanted,
+                                           const BeforeFile& before) {
+    return std::make_unique<ImageStack>(path, wanted, before, openTiff);
+}
+
+} // namespace pellucid
