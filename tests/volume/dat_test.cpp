@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "loaded.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
@@ -20,23 +21,6 @@ VolumeSource sourceOf(const std::string& path, int component = 0) {
     source.path = path;
     source.component = component;
     return source;
-}
-
-template <class T>
-std::vector<T> samplesOf(const Volume& volume) {
-    const auto& samples = std::get<SampleArray<T>>(volume.samples());
-    return {samples.begin(), samples.end()};
-}
-
-std::string errorOf(const VolumeSource& source) {
-    try {
-        loadVolume(source);
-    } catch (const FileError& e) {
-        CHECK(!e.where().empty());
-        CHECK(std::string(e.what()).find('\n') == std::string::npos);
-        return e.what();
-    }
-    return "no error";
 }
 
 const std::string kVoreen = "ObjectFileName: a.raw\nTaggedFileName: ---\nResolution: 3 2 1\n";

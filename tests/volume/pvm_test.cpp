@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "loaded.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
@@ -21,23 +22,6 @@ VolumeSource sourceOf(const std::string& path, int component = 0) {
     source.path = path;
     source.component = component;
     return source;
-}
-
-template <class T>
-std::vector<T> samplesOf(const Volume& volume) {
-    const auto& samples = std::get<SampleArray<T>>(volume.samples());
-    return {samples.begin(), samples.end()};
-}
-
-std::string errorOf(const VolumeSource& source) {
-    try {
-        loadVolume(source);
-    } catch (const FileError& e) {
-        CHECK(!e.where().empty());
-        CHECK(std::string(e.what()).find('\n') == std::string::npos);
-        return e.what();
-    }
-    return "no error";
 }
 
 /// Bits, the highest first.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <numeric>
 
+#include "loaded.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
@@ -24,12 +25,6 @@ VolumeSource sourceOf(const std::string& path, const std::string& array = "", in
     source.array = array;
     source.component = component;
     return source;
-}
-
-template <class T>
-std::vector<T> samplesOf(const Volume& volume) {
-    const auto& samples = std::get<SampleArray<T>>(volume.samples());
-    return {samples.begin(), samples.end()};
 }
 
 /// As a binary file has them.
@@ -55,17 +50,6 @@ const std::string kGrid = "DATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nSPACING 
 
 std::string vtk(bool binary, const std::string& body, const std::string& grid = kGrid) {
     return "# vtk DataFile Version 3.0\na title\n" + std::string(binary ? "BINARY\n" : "ASCII\n") + grid + body;
-}
-
-std::string errorOf(const VolumeSource& source) {
-    try {
-        loadVolume(source);
-    } catch (const FileError& e) {
-        CHECK(!e.where().empty());
-        CHECK(std::string(e.what()).find('\n') == std::string::npos);
-        return e.what();
-    }
-    return "no error";
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "loaded.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/series.h"
@@ -31,23 +32,6 @@ VolumeSource sourceOf(const std::string& path, const std::string& array = "") {
     source.path = path;
     source.array = array;
     return source;
-}
-
-template <class T>
-std::vector<T> samplesOf(const Volume& volume) {
-    const auto& samples = std::get<SampleArray<T>>(volume.samples());
-    return {samples.begin(), samples.end()};
-}
-
-std::string errorOf(const VolumeSource& source) {
-    try {
-        loadVolume(source);
-    } catch (const FileError& e) {
-        CHECK(!e.where().empty());
-        CHECK(std::string(e.what()).find('\n') == std::string::npos);
-        return e.what();
-    }
-    return "no error";
 }
 
 } // namespace
