@@ -10,6 +10,7 @@
 #include <gdcmReader.h>
 
 #include "base/text.h"
+#include "foreign/foreign_volume.h"
 #include "volume/formats/file_check.h"
 
 namespace pellucid {
@@ -92,9 +93,7 @@ std::vector<char> readPlain(const DicomFrame& frame) {
     if (!in) throw failure(frame, "the file cannot be read");
     if (frame.isBigEndian != (std::endian::native == std::endian::big)) {
         const std::size_t each = std::max<std::size_t>(bytesPerSampleOf(pixels), frame.areWords ? 2 : 1);
-        for (std::size_t i = 0; i + each <= read.size(); i += each)
-            std::reverse(read.begin() + static_cast<std::ptrdiff_t>(i),
-                         read.begin() + static_cast<std::ptrdiff_t>(i + each));
+        swapBytes(std::as_writable_bytes(std::span(read)), each);
     }
     if (pixels.areBits) return spreadBits(read, values);
     return areShared ? spreadHues(read) : read;

@@ -43,7 +43,7 @@ std::vector<DicomFrame> framesIn(const std::vector<std::string>& files, const Be
     std::vector<DicomFrame> frames;
     for (const std::string& file : files) {
         before(bytesOfFile(file));
-        if (contentOf(file) != "a DICOM file") continue;
+        if (contentOf(file) != kDicomContent) continue;
         try {
             const std::vector<DicomFrame> more = readDicomHeader(file);
             frames.insert(frames.end(), more.begin(), more.end());

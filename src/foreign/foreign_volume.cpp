@@ -25,6 +25,10 @@ std::span<std::byte> copyFromSlice(std::span<const std::byte> slice, const glm::
     return to;
 }
 
+void swapBytes(std::span<std::byte> bytes, std::size_t width) {
+    for (; bytes.size() >= width; bytes = bytes.subspan(width)) std::ranges::reverse(bytes.first(width));
+}
+
 std::uint64_t bytesOfFile(const std::string& path) {
     std::error_code ec;
     const auto bytes = fs::file_size(path, ec);

@@ -43,6 +43,8 @@ std::string folderToRead(const std::string& path);
 /// what of `to` is left.
 std::span<std::byte> copyFromSlice(std::span<const std::byte> slice, const glm::ivec2& size, std::size_t bytesPerVoxel,
                                    const VoxelRegion& region, std::span<std::byte> to);
+/// The bytes of numbers of `width` bytes in the other order.
+void swapBytes(std::span<std::byte> bytes, std::size_t width);
 /// Of a file; 0 where it is not there.
 std::uint64_t bytesOfFile(const std::string& path);
 

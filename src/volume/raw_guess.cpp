@@ -12,6 +12,7 @@
 
 #include "base/mapped_file.h"
 #include "base/text.h"
+#include "volume/formats/content.h"
 #include "volume/formats/file_check.h"
 #include "volume/formats/inflate_index.h"
 
@@ -238,7 +239,7 @@ public:
     RawFile(const std::string& path, const JobControl& job) {
         m_count = readableFileBytes(path);
         if (m_count == 0) return;
-        if (fileHead(path, 3).starts_with("\x1f\x8b\b")) {
+        if (isGzip(path)) {
             const auto index = InflateIndex::of(path, 0, false);
             m_count = index->requireWhole(job);
             if (m_count > kMostUnpacked) return;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "support/array_writer.h"
+#include "support/notices.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
@@ -38,11 +39,6 @@ bool isCounted(const Volume& volume, double first = 0) {
     for (std::size_t i = 0; i < volume.size(); ++i)
         if (volume.value(i) != first + static_cast<double>(i)) return false;
     return true;
-}
-
-bool hasNotice(const Volume& volume, const std::string& text) {
-    return std::ranges::any_of(volume.notices,
-                               [&](const auto& notice) { return notice.find(text) != std::string::npos; });
 }
 
 /// A file of one array of 4 x 3 x 2 voxels, 0 … 23, changed by `change` before that is written.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "support/dicom_writer.h"
+#include "support/notices.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
@@ -24,11 +25,6 @@ VolumeSource at(const std::string& path, const std::string& series = "") {
     source.path = path;
     source.array = series;
     return source;
-}
-
-bool hasNotice(const Volume& volume, const std::string& text) {
-    return std::ranges::any_of(volume.notices,
-                               [&](const auto& notice) { return notice.find(text) != std::string::npos; });
 }
 
 /// A slice `n` of a stack along z, 1.5 mm apart; its voxels are 100 n, 100 n + 1, …

@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include "support/dicom_writer.h"
+#include "support/notices.h"
 #include "support/temp_folder.h"
 #include "support/tiff_writer.h"
 #include "volume/file_contents.h"
@@ -40,11 +41,6 @@ std::vector<TiffPage> pages(int count, const std::string& description = "", int 
         all.push_back(page);
     }
     return all;
-}
-
-bool hasNotice(const Volume& volume, const std::string& text) {
-    return std::ranges::any_of(volume.notices,
-                               [&](const auto& notice) { return notice.find(text) != std::string::npos; });
 }
 
 } // namespace

@@ -10,14 +10,15 @@
 #include <blosc.h>
 #include <lz4.h>
 #include <nlohmann/json.hpp>
-#include <zlib.h>
 #include <zstd.h>
 
 #include "base/memory.h"
+#include "support/notices.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
 #include "volume/series.h"
+#include "volume/volume_files.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -34,26 +35,8 @@ VolumeSource at(const std::string& path) {
     return source;
 }
 
-template <class T>
-std::string bytesOf(const std::vector<T>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
 using Pack = std::function<std::string(const std::string&)>;
 
-std::string packedByGzip(const std::string& bytes, int window) {
-    z_stream stream{};
-    deflateInit2(&stream, 6, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY);
-    std::string packed(deflateBound(&stream, bytes.size()) + 64, '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream.avail_in = static_cast<uInt>(bytes.size());
-    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-    stream.avail_out = static_cast<uInt>(packed.size());
-    deflate(&stream, Z_FINISH);
-    packed.resize(stream.total_out);
-    deflateEnd(&stream);
-    return packed;
-}
 std::string packedByZstd(const std::string& bytes) {
     std::string packed(ZSTD_compressBound(bytes.size()), '\0');
     packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 3));
@@ -182,19 +165,14 @@ std::string errorOf(const VolumeSource& source) {
     return "none";
 }
 
-bool hasNotice(const Volume& volume, const std::string& text) {
-    return std::ranges::any_of(volume.notices,
-                               [&](const auto& notice) { return notice.find(text) != std::string::npos; });
-}
-
 } // namespace
 
 TEST_CASE("chunks of Zarr are unpacked, whatever they are packed by", "[zarr]") {
     const TempFolder folder;
     const std::vector<std::pair<json, Pack>> ways{
         {nullptr, asItIs},
-        {{{"id", "gzip"}}, [](const std::string& bytes) { return packedByGzip(bytes, 31); }},
-        {{{"id", "zlib"}}, [](const std::string& bytes) { return packedByGzip(bytes, 15); }},
+        {{{"id", "gzip"}}, gzipped},
+        {{{"id", "zlib"}}, zlibbed},
         {{{"id", "zstd"}}, packedByZstd},
         {{{"id", "lz4"}}, packedByLz4},
         {{{"id", "blosc"}}, [](const std::string& bytes) { return packedByBlosc(bytes, "lz4"); }},
@@ -274,7 +252,7 @@ TEST_CASE("version 3 of Zarr, with steps in a row and shards", "[zarr]") {
         return loadVolume(at(folder.path(name)));
     };
     requireValues(with("raw", json::array({kBytes}), asItIs));
-    requireValues(with("gzip", {kBytes, {{"name", "gzip"}}}, [](const auto& b) { return packedByGzip(b, 31); }));
+    requireValues(with("gzip", {kBytes, {{"name", "gzip"}}}, gzipped));
     requireValues(with("sums", {kBytes, {{"name", "zstd"}}, {{"name", "crc32c"}}}, [](const std::string& bytes) {
         const std::string packed = packedByZstd(bytes);
         return packed + bytesOf<std::uint32_t>({crc32c(packed)});
@@ -494,7 +472,7 @@ TEST_CASE("what Zarr cannot be is said", "[zarr]") {
     CHECK_THAT(errorOf(at(path)), Contains("no JSON object"));
     // A chunk that unpacks to gigabytes of zeros.
     writeArray(path, metadata2({{"id", "zlib"}}),
-               [](const std::string&) { return packedByGzip(std::string(1u << 24, '\0'), 15); });
+               [](const std::string&) { return zlibbed(std::string(1u << 24, '\0')); });
     CHECK_THAT(errorOf(at(path)), Contains("unpacks to more than the array has"));
     // An array of an image that leads elsewhere.
     const std::string other = folder.path("b.zarr");

@@ -1,4 +1,4 @@
-// Which of several DICOM series is opened.
+// Which of several volumes is opened: series of DICOM, arrays, images.
 #pragma once
 
 #include <QDialog>

@@ -25,8 +25,8 @@ bool isHdf5BehindBlock(const std::string& path) {
 ArrayKind arrayKindOf(const std::string& path) {
     if (isFolder(path)) return ArrayKind::None;
     const std::string content = contentOf(path);
-    if (content == "an HDF5 file") return ArrayKind::Hdf5;
-    if (content == "a NetCDF file") return ArrayKind::NetCdf;
+    if (content == kHdf5Content) return ArrayKind::Hdf5;
+    if (content == kNetCdfContent) return ArrayKind::NetCdf;
     return isHdf5BehindBlock(path) ? ArrayKind::Hdf5 : ArrayKind::None;
 }
 

@@ -85,8 +85,7 @@ ArrayVolume::ArrayVolume(std::unique_ptr<ArrayFile> file, const std::string& pat
     for (const ArrayVariable& variable : m_file->variables())
         if (variable.type && variable.dims.size() >= 3 && valuesIn(variable) > 0) m_volumes.push_back(&variable);
     choose(wanted);
-    std::vector<std::int64_t> sizes = m_chosen->dims;
-    valueCount(path, sizes, bytesPerValue(m_packed.type));
+    valueCount(path, m_chosen->dims, bytesPerValue(m_packed.type)); // throws where they are too many to count
 }
 
 void ArrayVolume::choose(const std::string& wanted) {

@@ -53,11 +53,8 @@ std::uint64_t bytesPer(NcType type) {
 }
 
 /// Numbers of the file are big endian.
-void swapBytes(std::span<std::byte> bytes, std::uint64_t width) {
-    if (std::endian::native == std::endian::big) return;
-    for (std::size_t at = 0; at + width <= bytes.size(); at += width)
-        std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
-                     bytes.begin() + static_cast<std::ptrdiff_t>(at + width));
+void toNative(std::span<std::byte> bytes, std::uint64_t width) {
+    if (std::endian::native == std::endian::little) swapBytes(bytes, width);
 }
 
 /// A header, part by part.
@@ -143,7 +140,7 @@ ArrayAttribute attributeIn(Header& header) {
         return attribute;
     }
     const std::span<std::byte> raw = std::as_writable_bytes(std::span(values));
-    swapBytes(raw, width);
+    toNative(raw, width);
     withType(valueTypeOf(type).value(), [&](auto value) {
         for (std::size_t at = 0; at < bytes; at += sizeof value) {
             std::memcpy(&value, raw.data() + at, sizeof value);
@@ -248,7 +245,7 @@ public:
                 index[a] = box.first[a];
             }
         }
-        swapBytes(to, width);
+        toNative(to, width);
     }
 
 private:

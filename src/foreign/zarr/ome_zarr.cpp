@@ -108,9 +108,20 @@ std::int64_t OmeZarr::Image::size(char axis, std::size_t level) const {
     return at == std::string::npos ? 1 : levels[level].shape()[at];
 }
 
-std::uint64_t OmeZarr::Image::voxels() const {
-    return static_cast<std::uint64_t>(size('x')) * static_cast<std::uint64_t>(size('y')) *
-           static_cast<std::uint64_t>(size('z'));
+Int3 OmeZarr::Image::dims(std::size_t level) const {
+    return {static_cast<int>(size('x', level)), static_cast<int>(size('y', level)), static_cast<int>(size('z', level))};
+}
+
+Int3 OmeZarr::Image::factors(std::size_t level) const {
+    return glm::max(Int3(1), Int3(glm::round(Vec3(dims()) / Vec3(dims(level)))));
+}
+
+bool OmeZarr::Image::isCoarser(std::size_t level) const {
+    // Writers round sizes up or down.
+    const Int3 factor = factors(level), least = dims() / factor, most = (dims() - 1) / factor + 1;
+    return factor != Int3(1) && glm::all(glm::greaterThanEqual(dims(level), least)) &&
+           glm::all(glm::lessThanEqual(dims(level), most)) && levels[level].type() == levels.front().type() &&
+           size('c', level) == size('c') && size('t', level) == size('t');
 }
 
 OmeZarr::OmeZarr(const std::string& path, const std::string& wanted, const BeforeFile& before) : m_path(path) {
@@ -123,7 +134,7 @@ OmeZarr::OmeZarr(const std::string& path, const std::string& wanted, const Befor
         const auto nameOf = [](const Image& image) { return inQuotes(image.name); };
         throw UsageError("there is no image " + inQuotes(wanted), path, "it has " + joined(m_images, ", ", nameOf));
     }
-    const auto isSmaller = [](const Image& a, const Image& b) { return a.voxels() < b.voxels(); };
+    const auto isSmaller = [](const Image& a, const Image& b) { return voxelCount(a.dims()) < voxelCount(b.dims()); };
     const auto largest = std::ranges::max_element(m_images, isSmaller); // the first of several
     m_shown = static_cast<std::size_t>((wanted.empty() ? largest : found) - m_images.begin());
     if (m_images.size() > 1 && wanted.empty())
@@ -142,10 +153,9 @@ void OmeZarr::find(const std::string& folder, const std::string& name, int depth
         const json& ome = attributes.contains("ome") && attributes["ome"].is_object() ? attributes["ome"] : attributes;
         const JsonValue metadata(ome, node->file);
         if (metadata.has("multiscales")) {
-            for (const JsonValue& multiscale : metadata["multiscales"].items()) {
-                addImage(folder, name, multiscale, before);
-                break; // further ones are the same image in other forms
-            }
+            const std::vector<JsonValue> multiscales = metadata["multiscales"].items();
+            // Further ones are the same image in other forms.
+            if (!multiscales.empty()) addImage(folder, name, multiscales.front(), before);
             return;
         }
     } catch (const FileError& fault) {
@@ -192,6 +202,8 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
     image.axes = axes.letters;
     if (image.axes.find('x') == std::string::npos || image.axes.find('y') == std::string::npos)
         multiscale.fail("the image has no axes x and y");
+    for (std::size_t level = image.levels.size() - 1; level > 0; --level)
+        if (!image.isCoarser(level)) image.levels.erase(image.levels.begin() + static_cast<std::ptrdiff_t>(level));
     std::string unit;
     for (int a = 0; a < 3; ++a) {
         const std::size_t at = image.axes.find(kSpace[static_cast<std::size_t>(a)]);
@@ -253,23 +265,10 @@ ReaderLayout OmeZarr::layout(int step) const {
     layout.notices = image.notices;
     const std::size_t z = image.axes.find('z');
     const auto layersOf = [&](const ZarrArray& array) { return z == std::string::npos ? 1 : array.chunk()[z]; };
-    const Int3 full(static_cast<int>(image.size('x')), static_cast<int>(image.size('y')),
-                    static_cast<int>(image.size('z')));
     for (std::size_t n = 1; n < image.levels.size(); ++n) {
-        ReaderLevel level;
-        for (int a = 0; a < 3; ++a)
-            level.dims[a] = static_cast<int>(image.size(kSpace[static_cast<std::size_t>(a)], n));
-        level.factors = glm::max(Int3(1), Int3(glm::round(Vec3(full) / Vec3(level.dims))));
-        // Writers round sizes up or down.
-        const Int3 least = full / level.factors, most = (full - 1) / level.factors + 1;
-        const bool isCoarser = level.factors != Int3(1) && glm::all(glm::greaterThanEqual(level.dims, least)) &&
-                               glm::all(glm::lessThanEqual(level.dims, most)) &&
-                               image.levels[n].type() == image.levels.front().type() &&
-                               image.size('c', n) == image.size('c') && image.size('t', n) == image.size('t');
-        if (!isCoarser) continue;
-        level.spacing = layout.spacing * Vec3(level.factors);
-        level.origin = layout.origin + layout.directions * (0.5 * Vec3(level.factors - 1) * layout.spacing);
-        answer.levels.push_back(level);
+        const Vec3 factors(image.factors(n));
+        answer.levels.push_back({image.dims(n), image.factors(n), layout.spacing * factors,
+                                 layout.origin + layout.directions * (0.5 * (factors - 1.0) * layout.spacing)});
     }
     answer.layersAtOnce = static_cast<int>(std::min(layersOf(image.levels.front()), image.size('z')));
     return answer;
@@ -286,8 +285,7 @@ FileContents OmeZarr::contents() const {
     if (m_images.size() == 1) return contents;
     for (const Image& image : m_images) {
         contents.arrays.push_back(image.name);
-        contents.details.push_back(std::to_string(image.size('x')) + " x " + std::to_string(image.size('y')) + " x " +
-                                   std::to_string(image.size('z')));
+        contents.details.push_back(dimsText(image.dims()));
     }
     return contents;
 }
@@ -307,15 +305,6 @@ std::uint64_t OmeZarr::largestImageBytes() const {
 void OmeZarr::read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
                    const JobControl& job) const {
     const Image& image = m_images[m_shown];
-    // The arrays of the levels that layout() names, which may leave some out.
-    std::size_t array = 0;
-    if (box.level > 0) {
-        const Int3 wanted = dimsOf(layout(step), box.level);
-        while (array + 1 < image.levels.size() &&
-               Int3(static_cast<int>(image.size('x', array)), static_cast<int>(image.size('y', array)),
-                    static_cast<int>(image.size('z', array))) != wanted)
-            ++array;
-    }
     const std::size_t axes = image.axes.size();
     ZarrBox part{std::vector<std::int64_t>(axes), std::vector<std::int64_t>(axes)};
     std::vector<std::int64_t> strides(axes, 0);
@@ -332,7 +321,7 @@ void OmeZarr::read(int step, const ReaderBox& box, std::span<std::byte> voxels, 
         part.hi[a] = box.region.hi[s];
         strides[a] = s == 0 ? 1 : s == 1 ? size.x : std::int64_t{size.x} * size.y;
     }
-    image.levels[array].read(part, strides, voxels, before, job);
+    image.levels.at(static_cast<std::size_t>(box.level)).read(part, strides, voxels, before, job);
 }
 
 } // namespace pellucid

@@ -24,7 +24,7 @@ public:
               const JobControl& job) const override;
 
 private:
-    /// What can be opened: arrays of one image, from fine to coarse.
+    /// What can be opened: arrays of one image, from fine to coarse. All but the first are coarser copies of that.
     struct Image {
         std::string name; ///< path in the folder; empty: the folder itself
         std::vector<ZarrArray> levels;
@@ -34,7 +34,9 @@ private:
         std::string timeUnit;
         std::vector<std::string> notices;
         std::int64_t size(char axis, std::size_t level = 0) const;
-        std::uint64_t voxels() const;
+        Int3 dims(std::size_t level = 0) const;
+        Int3 factors(std::size_t level) const;   ///< voxels of level 0 to one of `level`
+        bool isCoarser(std::size_t level) const; ///< whether it is level 0 in fewer voxels, and nothing else
     };
     void find(const std::string& folder, const std::string& name, int depth, const BeforeFile& before);
     void addImage(const std::string& folder, const std::string& name, const JsonValue& multiscale,

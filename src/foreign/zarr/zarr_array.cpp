@@ -60,12 +60,6 @@ float floatOfHalf(std::uint16_t half) {
     return exponent == 0 ? sign * std::ldexp(fraction, -14) : sign * std::ldexp(1.0f + fraction, exponent - 15);
 }
 
-void swapEach(std::vector<char>& values, std::size_t size) {
-    for (std::size_t at = 0; at + size <= values.size(); at += size)
-        std::reverse(values.begin() + static_cast<std::ptrdiff_t>(at),
-                     values.begin() + static_cast<std::ptrdiff_t>(at + size));
-}
-
 /// The value of chunks that are not stored.
 template <class T>
 T fillAs(double fill) {
@@ -306,7 +300,8 @@ std::vector<char> ZarrArray::storedInShard(const Index& chunk, std::string& path
 
 void ZarrArray::convert(std::vector<char>& values) const {
     const std::size_t size = m_isHalf ? 2 : static_cast<std::size_t>(bytesPerValue(m_type));
-    if (size > 1 && m_bigEndian != (std::endian::native == std::endian::big)) swapEach(values, size);
+    if (size > 1 && m_bigEndian != (std::endian::native == std::endian::big))
+        swapBytes(std::as_writable_bytes(std::span(values)), size);
     if (!m_isHalf) return;
     std::vector<char> floats(2 * values.size());
     for (std::size_t i = 0; i < values.size() / 2; ++i) {

@@ -136,6 +136,8 @@ std::string ofVolume(std::string_view head) {
 
 } // namespace
 
+bool isGzip(const std::string& path) { return fileHead(path, 3) == "\x1f\x8b\b"; }
+
 bool beginsLikeNifti(std::string_view head) {
     const std::string_view size = head.substr(0, 4);
     return size == "\x5c\1\0\0"sv || size == "\0\0\1\x5c"sv || size == "\x1c\2\0\0"sv || size == "\0\0\2\x1c"sv;

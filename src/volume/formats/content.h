@@ -23,6 +23,8 @@ inline constexpr std::size_t kHeadBytes = 1024;
 std::string describeContent(std::string_view head);
 /// The same of a file; empty where it is none, or cannot be read.
 std::string contentOf(const std::string& path);
+/// Whether a file is packed by gzip. Throws FileError where it cannot be read.
+bool isGzip(const std::string& path);
 /// Whether bytes begin with the size of a NIfTI header, in either byte order, as those of Analyze do, too.
 bool beginsLikeNifti(std::string_view head);
 

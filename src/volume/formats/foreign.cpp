@@ -56,12 +56,7 @@ ReaderRequest arrayRequest(const VolumeSource& source) {
     return requestOf(source, kOfArrays);
 }
 
-ReaderRequest zarrRequest(const VolumeSource& source) {
-    if (!holdsZarr(source.path))
-        throw FileError("this folder holds no Zarr metadata", source.path,
-                        "name the folder that has .zattrs or zarr.json");
-    return requestOf(source, kOfArrays);
-}
+ReaderRequest zarrRequest(const VolumeSource& source) { return requestOf(source, kOfArrays); }
 
 template <auto requestFor>
 FileContents describe(const VolumeSource& source, const JobControl& job) {
@@ -175,7 +170,7 @@ VolumeFormat dicomFormat() {
 
 VolumeFormat imageFormat() { return foreignFormat<imageRequest>("pictures", {".tif", ".tiff"}, kTiffContent, false); }
 
-VolumeFormat zarrFormat() { return foreignFormat<zarrRequest>("OME-Zarr", {".zarr"}, nullptr, true); }
+VolumeFormat zarrFormat() { return foreignFormat<zarrRequest>("OME-Zarr", {}, nullptr, true); }
 
 VolumeFormat hdf5Format() {
     return foreignFormat<arrayRequest>("HDF5", {".h5", ".hdf5", ".hdf", ".he5", ".mat"}, kHdf5Content, true);

@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 
+#include "volume/formats/content.h"
 #include "volume/formats/inflate_index.h"
 #include "volume/formats/reader.h"
 #include "volume/spacing.h"
@@ -50,7 +51,7 @@ struct RawBytes {
 RawBytes rawBytes(const VolumeSource& source, const JobControl& job) {
     RawBytes bytes;
     bytes.stored = bytes.count = readableFileBytes(source.path);
-    if (stepsIn(source, bytes.stored) == 1 || !fileHead(source.path, 3).starts_with("\x1f\x8b\b")) return bytes;
+    if (stepsIn(source, bytes.stored) == 1 || !isGzip(source.path)) return bytes;
     bytes.index = InflateIndex::of(source.path, 0, false);
     bytes.count = bytes.index->requireWhole(job);
     return bytes;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -34,20 +33,9 @@ std::optional<ValueType> typeNamed(const std::string& name) {
 }
 
 /// A name as people read it: VTK writes blanks and the like as "%20", those of colours as "%%20".
-std::string decodedName(const std::string& name) {
-    std::string plain;
-    for (std::size_t i = 0; i < name.size(); ++i) {
-        int code = 0;
-        if (name.compare(i, 2, "%%") == 0) ++i;
-        const char *digits = name.data() + i + 1, *end = digits + 2;
-        if (name[i] == '%' && i + 2 < name.size() && std::from_chars(digits, end, code, 16).ptr == end) {
-            plain += static_cast<char>(code);
-            i += 2;
-        } else {
-            plain += name[i];
-        }
-    }
-    return plain;
+std::string decodedName(std::string name) {
+    for (std::size_t at = name.find("%%"); at != std::string::npos; at = name.find("%%", at + 1)) name.erase(at, 1);
+    return percentDecoded(name);
 }
 
 /// Goes through a file by its words.
