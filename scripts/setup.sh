@@ -12,7 +12,7 @@ packages=(
     # the build
     g++ cmake ninja-build ccache pkg-config git ca-certificates
     # volume files, images, threads, maths, JSON, XML, command line
-    zlib1g-dev libbz2-dev liblz4-dev liblzma-dev libzstd-dev libblosc-dev libgdcm-dev libtiff-dev libhdf5-dev libnetcdf-dev
+    zlib1g-dev libbz2-dev liblz4-dev liblzma-dev libdeflate-dev libzstd-dev libblosc-dev libgdcm-dev libtiff-dev libhdf5-dev libnetcdf-dev
     libopenimageio-dev libtbb-dev libglm-dev libeigen3-dev nlohmann-json3-dev libpugixml-dev libcli11-dev
     # OpenGL, on a GPU or in software, with and without a display
     libepoxy-dev libgl-dev libegl-dev libopengl-dev libegl1 libgl1-mesa-dri libegl-mesa0 libosmesa6

@@ -15,6 +15,7 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::optional<SampleType> type;
+    bool allFrames = false;
     std::string out;
 };
 
@@ -35,7 +36,12 @@ Answer run(const Options& o, Progress& progress) {
     const Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Volume& volume = *opened.scene.volume;
     std::vector<std::string> notices = opened.sessionNotices;
-    const std::vector<std::string> lost = writeVolume(volume, o.out, o.type, progress.phase("writing"));
+    const WrittenPart part{.type = o.type};
+    TimeSeries& series = *opened.scene.series;
+    const int frames = o.allFrames ? series.size() : 1;
+    const JobControl writing = progress.phase("writing");
+    const std::vector<std::string> lost =
+        o.allFrames ? writeSeries(series, o.out, part, writing) : writeVolume(volume, o.out, part, writing);
     notices.insert(notices.end(), lost.begin(), lost.end());
     const SampleType type = o.type.value_or(volume.sampleType());
     std::error_code ec;
@@ -46,8 +52,10 @@ Answer run(const Options& o, Progress& progress) {
               {"type", name(type)},
               {"spacing", jsonFromVector(volume.geometry().spacing)}};
     if (!ec) json["file_bytes"] = bytes;
+    if (o.allFrames) json["frames"] = frames;
     return {"wrote " + o.out + ": " + dimsText(volume.dims()) + " voxels, " + name(type) +
-                (ec ? "" : ", " + bytesText(bytes)) + "\n",
+                (frames > 1 ? ", " + std::to_string(frames) + " frames" : "") + (ec ? "" : ", " + bytesText(bytes)) +
+                "\n",
             std::move(json), std::move(notices)};
 }
 
@@ -61,7 +69,10 @@ Command addConvert(CLI::App& program) {
         *app, "--type", "TYPE",
         [o](const std::string& text, const std::string& option) { o->type = parseName<SampleType>(text, option); },
         "type of the samples: u8 i8 u16 i16 u32 i32 f32 f64; what is rounded or cut is said (default: their own)");
-    addValue(*app, "--out", "FILE", o->out, anyText, "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti .tif .zarr")
+    app->add_flag("--all-frames", o->allFrames,
+                  "all frames, or those of --frames, in one file; as VTK image data a file each, and a .pvd");
+    addValue(*app, "--out", "FILE", o->out, anyText,
+             "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti .pvd .tif .zarr")
         ->required();
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

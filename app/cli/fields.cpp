@@ -11,6 +11,7 @@
 #include "prepare.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
+#include "volume/volume_writer.h"
 #include "volume/write_field.h"
 
 namespace pellucid::cli {
@@ -24,6 +25,7 @@ struct Options {
     std::string out;
     std::vector<std::string> features; ///< names, or "all"
     std::vector<FieldKind> kinds;      ///< empty: kUsual
+    std::string suffix = ".nrrd";      ///< of the files
 };
 
 constexpr std::array kUsual{FieldKind::Visibility, FieldKind::SaliencyBrightness, FieldKind::SaliencySaturation,
@@ -70,12 +72,12 @@ std::vector<int> featuresOf(const Options& o, const TransferFunction& tf) {
 
 /// All of each field, in the order of the kinds, then the features. No two files have the same name.
 std::vector<Output> outputsOf(const std::vector<FieldKind>& kinds, const std::vector<int>& features,
-                              const TransferFunction& tf) {
+                              const TransferFunction& tf, const std::string& suffix) {
     std::vector<Output> outputs;
     std::set<std::string> taken;
     const auto add = [&](FieldKind kind, int feature, const std::string& stem) {
-        std::string file = stem + ".nrrd";
-        for (int n = 2; !taken.insert(file).second; ++n) file = stem + "_" + std::to_string(n) + ".nrrd";
+        std::string file = stem + suffix;
+        for (int n = 2; !taken.insert(file).second; ++n) file = stem + "_" + std::to_string(n) + suffix;
         outputs.push_back({kind, feature, file});
     };
     for (const FieldKind kind : kinds) add(kind, -1, fileStem(kind));
@@ -90,10 +92,10 @@ Answer run(const Options& o, Progress& progress) {
     const std::vector<FieldKind> kinds =
         o.kinds.empty() ? std::vector<FieldKind>(kUsual.begin(), kUsual.end()) : o.kinds;
     const auto announce = [&](const Output& output) { addOutputFile(o.out, output.file, "--out"); };
-    for (const Output& output : outputsOf(kinds, {}, {})) announce(output);
+    for (const Output& output : outputsOf(kinds, {}, {}, o.suffix)) announce(output);
     const Opened opened = resolve(o.scene, progress, {toWriteFields(), true});
     const MeasureInput input = measureInput(opened.scene);
-    const std::vector<Output> outputs = outputsOf(kinds, featuresOf(o, input.tf), input.tf);
+    const std::vector<Output> outputs = outputsOf(kinds, featuresOf(o, input.tf), input.tf, o.suffix);
     for (const Output& output : outputs)
         if (output.feature >= 0) announce(output);
     Workspace workspace;
@@ -108,6 +110,11 @@ Answer run(const Options& o, Progress& progress) {
     const OutputFolder folder(o.out);
     const JobControl writing = progress.phase("writing");
     std::string text;
+    std::vector<std::string> notices = opened.notices();
+    const auto write = [&](const Grid<float>& values, const std::string& path) {
+        for (const std::string& lost : writeField(*input.volume, values, path)) // the same of all of them
+            if (std::find(notices.begin(), notices.end(), lost) == notices.end()) notices.push_back(lost);
+    };
     Json names = Json::array();
     for (const Output& output : outputs) {
         writing.throwIfStopped();
@@ -115,14 +122,14 @@ Answer run(const Options& o, Progress& progress) {
         const std::string path = (fs::path(o.out) / output.file).string();
         const JobControl stop{writing.stop, {}};
         if (output.kind == FieldKind::Visibility && output.feature < 0) {
-            writeField(*input.volume, visibility, path);
+            write(visibility, path);
         } else {
             Grid<float> values = dependsOnView(output.kind)
                                      ? visibility
                                      : saliencyGrid(weights, output.kind, input.settings.vws, stop, elsewhere);
             if (output.kind == FieldKind::Vws) visibilityToVws(values, weights, input.settings.vws, stop, elsewhere);
             keepFeature(values, *input.volume, input.tf, output.feature, stop);
-            writeField(*input.volume, values, path);
+            write(values, path);
         }
         text += "wrote " + path + "\n";
         names.push_back(path);
@@ -134,7 +141,7 @@ Answer run(const Options& o, Progress& progress) {
               {"seconds", {{"total", total.seconds()}}}};
     addProfile(json, input.settings);
     addMapping(json, opened.scene);
-    return {text, std::move(json), opened.notices()};
+    return {text, std::move(json), std::move(notices)};
 }
 
 } // namespace
@@ -142,7 +149,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addFields(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "fields",
-        "Writes visibility, saliency and each voxel's share of the VWS as NRRD files (float32, the volume's grid)");
+        "Writes visibility, saliency and each voxel's share of the VWS as volumes (float32, the volume's grid)");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
     addOutputFolder(
@@ -160,6 +167,13 @@ Command addFields(CLI::App& program) {
             if (std::find(o->kinds.begin(), o->kinds.end(), kind) == o->kinds.end()) o->kinds.push_back(kind);
         },
         "this field alone; repeatable (default: all but saliency, the sum of both with the weights u1 and u2)");
+    addValue(
+        *app, "--format", "SUFFIX",
+        [o](const std::string& text, const std::string& option) {
+            o->suffix = text.starts_with('.') ? text : "." + text;
+            atOption(option + " " + text, [&] { checkVolumeSuffix("a" + o->suffix); });
+        },
+        "format of the files: nrrd, mha, mhd, nii, nii.gz, vti, tif, zarr (default: nrrd)");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -193,12 +193,47 @@ void OutputFolder::write(const std::string& name, std::string_view bytes) {
     out.close(false);
 }
 
-void writeFolderAtomically(const std::string& path, const std::function<void(OutputFolder&)>& write) {
+namespace {
+
+/// Gives a whole folder its name; one that has it is removed. 0, or what went wrong.
+int putInPlace(const std::string& folder, const std::string& target, bool replaces) {
+    if (!replaces) return std::rename(folder.c_str(), target.c_str()) == 0 ? 0 : errno;
+    std::string old = folder;
+#ifdef RENAME_EXCHANGE
+    const bool areExchanged = renameat2(AT_FDCWD, folder.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0;
+#else
+    const bool areExchanged = false;
+#endif
+    if (!areExchanged) { // not every file system does that
+        old = temporaryBeside(target);
+        if (std::rename(target.c_str(), old.c_str()) != 0) return errno;
+        if (std::rename(folder.c_str(), target.c_str()) != 0) {
+            const int error = errno;
+            static_cast<void>(std::rename(old.c_str(), target.c_str()));
+            return error;
+        }
+    }
+    std::error_code ec;
+    fs::remove_all(old, ec);
+    return 0;
+}
+
+} // namespace
+
+void writeFolderAtomically(const std::string& path, const std::function<bool(const std::string&)>& mayReplace,
+                           const std::function<void(OutputFolder&)>& write) {
     fs::path target = path;
     if (target.filename().empty()) target = target.parent_path(); // "name/"
-    requireWritable(target.string());
-    if (typeOf(target.string()) != fs::file_type::not_found)
-        throw FileError("a file has this name", target.string(), "choose another name");
+    target = behindLinks(target);
+    const bool replaces = typeOf(target.string()) == fs::file_type::directory && mayReplace(target.string());
+    if (!replaces) {
+        requireWritable(target.string());
+        if (typeOf(target.string()) != fs::file_type::not_found)
+            throw FileError("a file has this name", target.string(), "choose another name");
+    } else if (access(folderOf(target).c_str(), W_OK | X_OK) != 0) {
+        throw FileError("the folder is not writable", folderOf(target).string(),
+                        "choose another folder or change its permissions");
+    }
     tellOfWriting(target.string());
     OutputFolder folder;
     folder.m_path = target.string();
@@ -217,15 +252,14 @@ void writeFolderAtomically(const std::string& path, const std::function<void(Out
         const int failure = descriptor < 0 || syncfs(descriptor) != 0 ? errno : 0;
         if (descriptor >= 0) ::close(descriptor);
         if (failure != 0) throw cannotWrite(folder.m_path, failure);
-        if (g_keeps && std::rename(folder.m_temporary.c_str(), target.c_str()) != 0)
-            throw cannotWrite(folder.m_path, errno);
+        if (!g_keeps) return static_cast<void>(fs::remove_all(folder.m_temporary));
+        if (const int error = putInPlace(folder.m_temporary, target.string(), replaces); error != 0)
+            throw cannotWrite(folder.m_path, error);
     } catch (...) {
         std::error_code ec;
         fs::remove_all(folder.m_temporary, ec);
         throw;
     }
-    std::error_code ec;
-    if (!g_keeps) fs::remove_all(folder.m_temporary, ec);
 }
 
 JointFile::~JointFile() {

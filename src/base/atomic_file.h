@@ -46,12 +46,16 @@ public:
     void write(const std::string& name, std::string_view bytes);
 
 private:
-    friend void writeFolderAtomically(const std::string& path, const std::function<void(OutputFolder&)>& write);
+    friend void writeFolderAtomically(const std::string& path,
+                                      const std::function<bool(const std::string&)>& mayReplace,
+                                      const std::function<void(OutputFolder&)>& write);
     std::string m_temporary, m_path;
 };
 
-/// writeAtomically() for a folder. Throws FileError, too, where something has this name already.
-void writeFolderAtomically(const std::string& path, const std::function<void(OutputFolder&)>& write);
+/// writeAtomically() for a folder. Throws FileError, too, where something has this name already, unless it is a folder
+/// of which `mayReplace` says that it may go: all that is in it is lost then, once the new one is whole.
+void writeFolderAtomically(const std::string& path, const std::function<bool(const std::string&)>& mayReplace,
+                           const std::function<void(OutputFolder&)>& write);
 
 /// Of several processes that do the same one keeps what they write; the others make sure that it could be written, and
 /// throw their bytes away. At first a process keeps it.

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "base/error.h"
 #include "base/round_numbers.h"
 #include "base/text.h"
+#include "volume/excerpt.h"
 #include "volume/formats/writer.h"
+#include "volume/time_series.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -34,78 +38,144 @@ const VolumeWriter& writerFor(const std::string& path) {
 
 std::string voxelsText(std::size_t count) { return std::to_string(count) + (count == 1 ? " voxel is" : " voxels are"); }
 
+/// What is lost of values on the way to another type, over all frames.
+struct ValueLosses {
+    std::size_t rounded = 0, cut = 0;
+    std::size_t invalid = 0;         ///< voxels that are not valid …
+    std::optional<double> writtenAs; ///< … and this value in the file, NaN included; empty: what they were
+    std::optional<double> notSaid;   ///< a value that is missing, which the file does not say
+
+    std::vector<std::string> sentences() const {
+        std::vector<std::string> all;
+        if (rounded > 0) all.push_back(voxelsText(rounded) + " rounded");
+        if (cut > 0) all.push_back(voxelsText(cut) + " cut to what the type can hold");
+        if (invalid > 0 && writtenAs && std::isnan(*writtenAs))
+            all.push_back(voxelsText(invalid) + " without a valid value, and written as NaN");
+        else if (invalid > 0 && writtenAs)
+            all.push_back(voxelsText(invalid) + " without a valid value, and written as " + plainText(*writtenAs) +
+                          ": open the file with that as missing value");
+        if (notSaid)
+            all.push_back("the file does not say that " + plainText(*notSaid) +
+                          " is missing: open it with that as missing value");
+        return all;
+    }
+};
+
 /// A volume in another type. Voxels that are not valid become NaN; where the type has none, its smallest value.
 template <class To>
-Volume converted(const Volume& volume, std::vector<std::string>& notices) {
+Volume converted(const Volume& volume, ValueLosses& lost) {
     constexpr double kLeast = static_cast<double>(std::numeric_limits<To>::lowest());
     constexpr double kMost = static_cast<double>(std::numeric_limits<To>::max());
+    constexpr bool kIsFloat = std::is_floating_point_v<To>;
     std::vector<To> values(volume.size());
-    std::size_t rounded = 0, cut = 0, invalid = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!volume.isValid(i)) {
-            ++invalid;
-            values[i] =
-                std::is_floating_point_v<To> ? std::numeric_limits<To>::quiet_NaN() : std::numeric_limits<To>::lowest();
+            ++lost.invalid;
+            values[i] = kIsFloat ? std::numeric_limits<To>::quiet_NaN() : std::numeric_limits<To>::lowest();
             continue;
         }
         const double value = volume.value(i), inRange = std::clamp(value, kLeast, kMost);
         const double kept = std::is_integral_v<To> ? std::round(inRange) : inRange;
         values[i] = static_cast<To>(kept);
         if (inRange != value)
-            ++cut;
+            ++lost.cut;
         else if (static_cast<double>(values[i]) != value)
-            ++rounded;
+            ++lost.rounded;
     }
-    if (rounded > 0) notices.push_back(voxelsText(rounded) + " rounded");
-    if (cut > 0) notices.push_back(voxelsText(cut) + " cut to what the type can hold");
-    if (invalid > 0 && std::is_integral_v<To>)
-        notices.push_back(voxelsText(invalid) + " without a valid value, and written as " + plainText(kLeast) +
-                          ": open the file with that as missing value");
-    if (invalid > 0 && std::is_floating_point_v<To> && volume.missing())
-        notices.push_back(voxelsText(invalid) + " without a valid value, and written as NaN");
+    if (!kIsFloat)
+        lost.writtenAs = kLeast;
+    else if (volume.missing())
+        lost.writtenAs = std::numeric_limits<double>::quiet_NaN();
     return {volume.geometry(), SampleArray<To>(std::move(values))};
 }
 
-Volume inType(const Volume& volume, SampleType type, std::vector<std::string>& notices) {
+Volume inType(const Volume& volume, SampleType type, ValueLosses& lost) {
     switch (type) {
     case SampleType::U8:
-        return converted<std::uint8_t>(volume, notices);
+        return converted<std::uint8_t>(volume, lost);
     case SampleType::I8:
-        return converted<std::int8_t>(volume, notices);
+        return converted<std::int8_t>(volume, lost);
     case SampleType::U16:
-        return converted<std::uint16_t>(volume, notices);
+        return converted<std::uint16_t>(volume, lost);
     case SampleType::I16:
-        return converted<std::int16_t>(volume, notices);
+        return converted<std::int16_t>(volume, lost);
     case SampleType::U32:
-        return converted<std::uint32_t>(volume, notices);
+        return converted<std::uint32_t>(volume, lost);
     case SampleType::I32:
-        return converted<std::int32_t>(volume, notices);
+        return converted<std::int32_t>(volume, lost);
     case SampleType::F32:
-        return converted<float>(volume, notices);
+        return converted<float>(volume, lost);
     case SampleType::F64:
         break;
     }
-    return converted<double>(volume, notices);
+    return converted<double>(volume, lost);
+}
+
+/// The step from each time to the next, where it is one.
+std::optional<StepTimes> evenTimes(const std::vector<double>& times, const std::string& unit) {
+    if (times.size() < 2) return {};
+    const StepTimes even{times[0], (times.back() - times[0]) / static_cast<double>(times.size() - 1), unit};
+    if (!(even.width > 0)) return {};
+    for (std::size_t n = 0; n < times.size(); ++n)
+        if (std::abs(times[n] - (even.first + static_cast<double>(n) * even.width)) > 1e-6 * even.width) return {};
+    return even;
+}
+
+/// `frames` are volumes as they are; a part of them is written.
+std::vector<std::string> write(FramesToWrite frames, const std::string& path, const WrittenPart& part,
+                               const JobControl& job) {
+    const VolumeWriter& writer = writerFor(path);
+    const Int3 dims = frames.geometry.dims;
+    const ExcerptPlan plan = planOf(part.region.value_or(VoxelRegion{Int3(0), dims}), dims, part.coarser);
+    frames.geometry = plan.geometryOf(frames.geometry);
+    frames.type = part.type.value_or(frames.type);
+    std::vector<std::string> lost = writer.losses(frames, path);
+    const bool isFloat = frames.type == SampleType::F32 || frames.type == SampleType::F64;
+    ValueLosses ofValues;
+    std::optional<Volume> cut, other;
+    frames.frame = [&, own = std::move(frames.frame)](int n, const JobControl& one) -> const Volume& {
+        const Volume& whole = own(n, one);
+        const Volume& volume = plan.isWhole() ? whole : cut.emplace(excerptOf(whole, plan, {one.stop, {}}));
+        if (volume.sampleType() == frames.type && !(isFloat && volume.missing())) {
+            if (volume.missing() && volume.invalidCount() > 0) ofValues.notSaid = volume.missing();
+            return volume;
+        }
+        return other.emplace(inType(volume, frames.type, ofValues));
+    };
+    writer.write(frames, path, job);
+    const std::vector<std::string> more = ofValues.sentences();
+    lost.insert(lost.end(), more.begin(), more.end());
+    return lost;
 }
 
 } // namespace
 
-std::vector<std::string> writeVolume(const Volume& volume, const std::string& path, std::optional<SampleType> type,
+std::vector<std::string> writeVolume(const Volume& volume, const std::string& path, const WrittenPart& part,
                                      const JobControl& job) {
-    const VolumeWriter& writer = writerFor(path);
-    std::vector<std::string> notices = writer.losses(volume.geometry());
-    const SampleType wanted = type.value_or(volume.sampleType());
-    const bool isFloat = wanted == SampleType::F32 || wanted == SampleType::F64;
-    if (wanted != volume.sampleType() || (isFloat && volume.missing())) {
-        const Volume other = inType(volume, wanted, notices);
-        writer.write(other, path, job);
-    } else {
-        if (volume.missing() && volume.invalidCount() > 0)
-            notices.push_back("the file does not say that " + plainText(*volume.missing()) +
-                              " is missing: open it with that as missing value");
-        writer.write(volume, path, job);
-    }
-    return notices;
+    FramesToWrite one{volume.geometry(), volume.sampleType()};
+    one.frame = [&](int, const JobControl&) -> const Volume& { return volume; };
+    return write(std::move(one), path, part, job);
+}
+
+std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path, const WrittenPart& part,
+                                     const JobControl& job) {
+    static_cast<void>(writerFor(path));
+    std::shared_ptr<const Volume> frame = series.load(0, job);
+    FramesToWrite all{frame->geometry(), frame->sampleType(), series.size()};
+    const SeriesListing& listing = series.listing();
+    for (const SeriesFrame& one : listing.frames)
+        if (listing.hasTimes) all.frameTimes.push_back(one.time);
+    std::vector<std::string> lost;
+    all.times = evenTimes(all.frameTimes, listing.timeUnit);
+    if (!all.times && all.frameTimes.size() > 1 && !lowerCase(path).ends_with(".pvd"))
+        lost.emplace_back("frames do not follow each other at one step of time: the file does not say when they are");
+    all.frame = [&](int n, const JobControl& one) -> const Volume& {
+        frame = series.load(n, {one.stop, {}});
+        return *frame;
+    };
+    const std::vector<std::string> more = write(std::move(all), path, part, job);
+    lost.insert(lost.end(), more.begin(), more.end());
+    return lost;
 }
 
 void checkVolumeSuffix(const std::string& path) { static_cast<void>(writerFor(path)); }
@@ -123,6 +193,13 @@ std::span<const std::byte> sampleBytes(const Volume& volume) {
         bytes = std::as_bytes(std::span(values.data(), voxelCount(volume.dims())));
     });
     return bytes;
+}
+
+void writeFrames(OutputFile& out, const FramesToWrite& frames, const JobControl& job) {
+    for (int n = 0; n < frames.count; ++n) {
+        const JobControl part = frames.part(n, job);
+        writePieces(out, sampleBytes(frames.frame(n, part)), part);
+    }
 }
 
 void writePieces(OutputFile& out, std::span<const std::byte> bytes, const JobControl& job) {

@@ -1,4 +1,4 @@
-// The one way from a volume to a file.
+// The one way from a volume, or from the frames of a series, to a file.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,26 @@
 
 namespace pellucid {
 
-/// Writes the samples of a volume with their geometry as NRRD, MetaImage, NIfTI or VTK image data, by the suffix of
-/// `path`. `type`: of the samples in the file; empty: their own. Read back they are the same, but for what the answer
-/// says, each a sentence without a full stop: values that are rounded or cut to the type, missing values, what the
-/// format cannot say. Throws UsageError for an unknown suffix, FileError, Cancelled; then nothing is left.
-std::vector<std::string> writeVolume(const Volume& volume, const std::string& path, std::optional<SampleType> type = {},
+class TimeSeries;
+
+/// What is written of a volume, and how.
+struct WrittenPart {
+    std::optional<SampleType> type{};    ///< of the samples in the file; empty: their own
+    std::optional<VoxelRegion> region{}; ///< of the volume's voxels; empty: all
+    int coarser = 1;                     ///< ≥ 1; so many of them along each axis become one, their mean
+};
+
+/// Writes the samples of a volume with their geometry as NRRD, MetaImage, NIfTI, VTK image data, TIFF or OME-Zarr, by
+/// the suffix of `path`. Read back they are the same, but for what the answer says, each a sentence without a full
+/// stop: values that are rounded or cut to the type, missing values, what the format cannot say. Throws UsageError for
+/// an unknown suffix, FileError, Cancelled; then nothing is left.
+std::vector<std::string> writeVolume(const Volume& volume, const std::string& path, const WrittenPart& part = {},
+                                     const JobControl& job = {});
+
+/// Writes all frames of a series into one file likewise, with their times; as VTK image data a file each, beside a
+/// collection (.pvd) that names them. Without a type they get that of the first frame. One frame is in memory at a
+/// time. Throws UsageError, too, where the format has no steps; FileError where a frame cannot be read.
+std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path, const WrittenPart& part = {},
                                      const JobControl& job = {});
 
 /// Throws UsageError where writeVolume() knows no format for this suffix.

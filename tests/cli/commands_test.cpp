@@ -958,3 +958,30 @@ TEST_CASE("convert writes a volume, or a part of it, in another format", "[cli]"
     const Outcome over = w.run({"convert", "b.vti", "--out", "b.vti"});
     CHECK(over.status == 2);
 }
+
+TEST_CASE("convert writes all frames of a series into one file", "[cli]") {
+    const Workshop w;
+    w.json({"generate", "vortex", "--size", "8", "--frames", "3", "--out", "v%02d.nrrd"});
+    const json all = w.json({"convert", "v%02d.nrrd", "--all-frames", "--out", "all.nii.gz"});
+    CHECK(all["frames"] == 3);
+    for (const char* frame : {"0", "2"}) {
+        w.json({"convert", "v%02d.nrrd", "--frame", frame, "--out", "one.nrrd"});
+        w.json({"convert", "all.nii.gz", "--frame", frame, "--out", "same.nrrd"});
+        CHECK(readVolume(w.path("one.nrrd")).samples() == readVolume(w.path("same.nrrd")).samples());
+    }
+    const Outcome image = w.run({"convert", "v%02d.nrrd", "--all-frames", "--out", "all.vti"});
+    CHECK(image.status != 0);
+    CHECK_THAT(image.err, Catch::Matchers::Contains(".pvd"));
+}
+
+TEST_CASE("fields are written in the format that is asked for", "[cli]") {
+    const Workshop w;
+    const Words volume{"sample:shells", "--size", "16", "--tf", "tents:3", "--engine", "cpu", "--field", "vws"};
+    w.json(Words{"fields"} + volume + Words{"--out", "n"});
+    const json written = w.json(Words{"fields"} + volume + Words{"--format", "nii.gz", "--out", "f"});
+    CHECK(written["files"] == json::array({"f/vws.nii.gz"}));
+    CHECK(readVolume(w.path("f/vws.nii.gz")).samples() == readVolume(w.path("n/vws.nrrd")).samples());
+    const Outcome wrong = w.run(Words{"fields"} + volume + Words{"--format", "png", "--out", "g"});
+    CHECK(wrong.status == 2);
+    CHECK_THAT(wrong.err, Catch::Matchers::Contains("--format png"));
+}

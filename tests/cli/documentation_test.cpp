@@ -25,7 +25,7 @@ namespace {
 const std::vector<std::string> kCommands{"info",         "samples", "presets", "generate", "convert",   "render",
                                          "measure",      "fields",  "propose", "refine",   "density",   "optimize",
                                          "probe",        "rulers",  "views",   "space",    "bench",     "sequence",
-                                         "saliency-map", "compare", "plot",    "film",     "reproduce", "study"};
+                                         "saliency-map", "compare", "describe", "plot",    "film",     "reproduce", "study"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
 

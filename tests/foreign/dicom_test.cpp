@@ -251,6 +251,22 @@ TEST_CASE("of several series in a folder one is chosen", "[dicom]") {
     CHECK_THROWS_AS(loadVolume(at(folder.path("study"), "9")), UsageError);
 }
 
+TEST_CASE("what a folder holds is told anew once its files have changed", "[dicom]") {
+    const TempFolder folder;
+    writeStack(folder, "scan", 3);
+    CHECK(contentsOf(at(folder.path("scan"))).dims.z == 3);
+    CHECK(contentsOf(at(folder.path("scan/IM00"))).dims.z == 3);
+    folder.write("scan/IM99", dicomFile(sliceAt(3)));
+    CHECK(contentsOf(at(folder.path("scan"))).dims.z == 4);
+    CHECK(contentsOf(at(folder.path("scan/IM00"))).dims.z == 4);
+    fs::remove(folder.path("scan/IM99"));
+    CHECK(contentsOf(at(folder.path("scan"))).dims.z == 3);
+    // Nothing has changed: no program is asked.
+    setReaderProgram(folder.path("none"));
+    CHECK(contentsOf(at(folder.path("scan"))).dims.z == 3);
+    setReaderProgram({});
+}
+
 TEST_CASE("several pictures of each place are time steps", "[dicom]") {
     const TempFolder folder;
     fs::create_directory(folder.path("heart"));

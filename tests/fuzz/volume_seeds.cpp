@@ -23,7 +23,7 @@ Volume smallVolume(SampleType type) {
     std::vector<float> values;
     for (int i = 0; i < 24; ++i) values.push_back(static_cast<float>(i % 7));
     const TempFolder folder;
-    writeVolume(Volume(geometry, SampleArray<float>(std::move(values))), folder.path("a.nrrd"), type);
+    writeVolume(Volume(geometry, SampleArray<float>(std::move(values))), folder.path("a.nrrd"), {type});
     VolumeSource source;
     source.path = folder.path("a.nrrd");
     return loadVolume(source);

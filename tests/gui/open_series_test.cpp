@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
 #include <QDialogButtonBox>
@@ -26,7 +27,9 @@
 #include <QUrl>
 
 #include "dialogs/raw_dialog.h"
+#include "dialogs/save_volume_dialog.h"
 #include "dialogs/series_files.h"
+#include "store/edits.h"
 #include "support/dicom_writer.h"
 
 using namespace pellucid;
@@ -362,7 +365,7 @@ TEST_CASE("the volume that is shown is saved in another format", "[series]") {
     for (const char* name : {"a.nii.gz", "a.mhd", "a.vti"}) {
         VolumeSource source;
         source.path = folder.filePath(name).toStdString();
-        w.saving().saveVolume(QString::fromStdString(source.path));
+        w.saving().saveVolume({QString::fromStdString(source.path)});
         REQUIRE(waitFor([&] { return saved.count() == 1; }));
         saved.clear();
         CHECK(loadVolume(source).samples() == shown.samples());
@@ -372,7 +375,37 @@ TEST_CASE("the volume that is shown is saved in another format", "[series]") {
         for (const QLabel* label : dialog.findChildren<QLabel*>()) said += label->text();
         dialog.reject();
     });
-    w.saving().saveVolume(folder.filePath("a.png"));
+    w.saving().saveVolume({folder.filePath("a.png")});
     REQUIRE(waitFor([&] { return !said.isEmpty(); }));
     CHECK(said.contains(".nii.gz"));
+}
+
+TEST_CASE("the dialog saves what the clip box leaves, coarser and in another type", "[series]") {
+    const QTemporaryDir folder;
+    OpenWindow w;
+    const Int3 dims = w.services().scene().volume->dims();
+    editPart(w.services().store(), &Session::clipping, "clip", {}, [](Clipping& clip) { clip.hi.x = 0.5; });
+    QSignalSpy saved(&w.saving(), &SaveController::volumeSaved);
+    const QString path = folder.filePath("half.nii");
+    QString summary;
+    answer("saveVolumeDialog", [&](QDialog& dialog) {
+        dialog.findChild<QLineEdit*>("volumePath")->setText(path);
+        dialog.findChild<QCheckBox*>("volumeClipped")->setChecked(true);
+        dialog.findChild<QComboBox*>("volumeCoarser")->setCurrentIndex(1);
+        auto* type = dialog.findChild<QComboBox*>("volumeType");
+        type->setCurrentIndex(type->findText("f32"));
+        CHECK_FALSE(dialog.findChild<QComboBox*>("volumeFrames")->isVisibleTo(&dialog)); // there is one
+        summary = dialog.findChild<QLabel*>("volumeSummary")->text();
+        dialog.accept();
+    });
+    w.child<QAction>("saveVolumeAction").trigger();
+    REQUIRE(waitFor([&] { return saved.count() == 1; }));
+    VolumeSource source;
+    source.path = path.toStdString();
+    const Volume read = loadVolume(source);
+    const Int3 half((dims.x + 1) / 2, dims.y, dims.z);
+    CHECK(read.dims() == (half + 1) / 2);
+    CHECK(read.sampleType() == SampleType::F32);
+    CHECK(summary.contains(QStringLiteral("%1 × %2 × %3").arg(read.dims().x).arg(read.dims().y).arg(read.dims().z)));
+    CHECK(summary.contains("f32"));
 }

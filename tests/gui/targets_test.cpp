@@ -1,11 +1,14 @@
 // Targets by hand: bars that are dragged, typed and locked, presets, settings, targets held live.
 #include "gui_support.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <QAction>
+#include <QApplication>
 #include <QCheckBox>
+#include <QClipboard>
 #include <QComboBox>
 #include <QDialog>
 #include <QDockWidget>
@@ -22,11 +25,13 @@
 #include <QToolTip>
 
 #include "controllers/live_controller.h"
+#include "optimize/answer/visibility_words.h"
 #include "panels/features_model.h"
 #include "render/camera_motion.h"
 #include "services/selection.h"
 #include "session/target_presets.h"
 #include "tf/edit.h"
+#include "view/volume_view.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -96,6 +101,23 @@ TEST_CASE("the bars are saved as charts, with their targets", "[targets]") {
     auto& button = w.child<QToolButton>("saveBarsButton");
     CHECK(button.isEnabled());
     CHECK(button.defaultAction() == &w.child<QAction>("saveBarsAction"));
+}
+
+TEST_CASE("the caption on the clipboard has the shares that the bars show, and a screen reader hears them",
+          "[targets]") {
+    OpenWindow w;
+    w.settle();
+    w.child<QAction>("copyCaptionAction").trigger();
+    const QString words = QApplication::clipboard()->text();
+    const std::vector<FeatureMeasures>& measured = w.document().measures()->features;
+    for (const FeatureMeasures& m : measured) {
+        CAPTURE(words.toStdString(), m.vws);
+        CHECK(words.contains(QString::fromStdString(percentText(m.vws))));
+        CHECK(words.contains(QString::fromStdString(percentText(m.visibility))));
+    }
+    const QString heard = w.child<VolumeView>("volumeView").accessibleDescription();
+    const auto most = std::ranges::max(measured, {}, &FeatureMeasures::vws);
+    CHECK(heard.contains(QString::fromStdString(percentText(most.vws) + " of the saliency")));
 }
 
 TEST_CASE("a target is dragged, typed and locked, each is one step", "[targets]") {

@@ -1,12 +1,17 @@
 // Volumes that are written and read back.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <memory>
 
 #include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
+#include "volume/time_series.h"
 #include "volume/volume_writer.h"
 
 using namespace pellucid;
@@ -115,7 +120,7 @@ TEST_CASE("another type says what it rounds and cuts", "[writer]") {
     g.dims = {2, 2, 2};
     const std::vector<float> values{-1, 0.4f, 1, 254.6f, 255, 256, 1e9f, std::numeric_limits<float>::quiet_NaN()};
     const Volume volume(g, SampleArray<float>(values));
-    const auto said = writeVolume(volume, folder.path("a.nrrd"), SampleType::U8);
+    const auto said = writeVolume(volume, folder.path("a.nrrd"), {SampleType::U8});
     REQUIRE(said.size() == 3);
     CHECK_THAT(said[0], Contains("2 voxels are rounded"));
     CHECK_THAT(said[1], Contains("3 voxels are cut"));
@@ -124,7 +129,7 @@ TEST_CASE("another type says what it rounds and cuts", "[writer]") {
     const int expected[] = {0, 0, 1, 255, 255, 255, 255, 0};
     for (std::size_t i = 0; i < 8; ++i) CHECK(read.value(i) == expected[i]);
     const std::vector<std::uint8_t> bytes{0, 1, 2, 3, 4, 5, 6, 255};
-    CHECK(writeVolume(Volume(g, SampleArray<std::uint8_t>(bytes)), folder.path("b.nii"), SampleType::F64).empty());
+    CHECK(writeVolume(Volume(g, SampleArray<std::uint8_t>(bytes)), folder.path("b.nii"), {SampleType::F64}).empty());
     CHECK(load(folder.path("b.nii")).value(7) == 255);
 }
 
@@ -167,6 +172,135 @@ TEST_CASE("a disk that fills up leaves nothing behind, whatever the format", "[w
         CHECK_THROWS_WITH(writeVolume(volume, folder.path(longest + "n" + suffix)), Contains("shorter name"));
     }
     CHECK(folder.fileCount() == 2);
-    // A folder is not replaced: something else may be in it.
-    CHECK_THROWS_WITH(writeVolume(volume, folder.path(longest + ".zarr")), Contains("a folder has this name"));
+}
+
+namespace {
+
+/// Three frames: voxel i of frame n is 10·i + n, at 2.5, 3 and 3.5 s (or, uneven, 2.5, 3 and 4).
+std::shared_ptr<TimeSeries> threeFrames(const Geometry& geometry, const std::string& unit = "s", bool even = true) {
+    SeriesListing listing;
+    listing.hasTimes = true;
+    listing.timeUnit = unit;
+    for (const double time : {2.5, 3.0, even ? 3.5 : 4.0}) {
+        listing.frames.emplace_back();
+        listing.frames.back().time = time;
+    }
+    return std::make_shared<TimeSeries>(listing, [geometry](int frame, const JobControl&) {
+        std::vector<std::int16_t> values(voxelCount(geometry.dims));
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = static_cast<std::int16_t>(10 * i + static_cast<std::size_t>(frame));
+        return Volume(geometry, SampleArray<std::int16_t>(std::move(values)));
+    });
+}
+
+VolumeSource sourceOf(const std::string& path) {
+    VolumeSource source;
+    source.path = path;
+    return source;
+}
+
+} // namespace
+
+TEST_CASE("all frames that are written into one file are read back with their times", "[writer]") {
+    const TempFolder folder;
+    for (const char* suffix : {".nrrd", ".mha", ".mhd", ".nii", ".nii.gz", ".pvd", ".tif", ".zarr"}) {
+        CAPTURE(suffix);
+        const std::string path = folder.path(std::string("a") + suffix);
+        const auto written = threeFrames(oblique(WorldAxes::Patient));
+        const auto lost = writeSeries(*written, path);
+        const bool isTiff = std::string(suffix) == ".tif",
+                   saysUnit = std::string(suffix).find(".m") != 0 && std::string(suffix) != ".pvd";
+        const auto read = TimeSeries::open(sourceOf(path));
+        REQUIRE(read->size() == 3);
+        for (int n = 0; n < 3; ++n) {
+            CHECK(read->load(n)->samples() == written->load(n)->samples());
+            CHECK(read->load(n)->dims() == Int3(3, 4, 5));
+            // TIFF has no place for when the first frame is.
+            CHECK(read->listing().frames[static_cast<std::size_t>(n)].time == Approx((isTiff ? 0 : 2.5) + 0.5 * n));
+        }
+        CHECK(glm::length(read->load(2)->geometry().spacing - Vec3(0.5, 0.25, 2)) < 1e-6);
+        CHECK(read->listing().timeUnit == (saysUnit ? "s" : ""));
+        const auto says = [&](const char* words) {
+            return std::ranges::any_of(lost, [&](const std::string& s) { return s.find(words) != std::string::npos; });
+        };
+        CHECK(says("unit") == !saysUnit);
+        CHECK(says("times begin at 0") == isTiff);
+    }
+    CHECK_THROWS_WITH(writeSeries(*threeFrames(oblique(WorldAxes::File)), folder.path("a.vti")),
+                      Contains("has one frame"));
+}
+
+TEST_CASE("frames at uneven times keep them where the format can", "[writer]") {
+    const TempFolder folder;
+    const Geometry g = oblique(WorldAxes::File);
+    writeSeries(*threeFrames(g, "s", false), folder.path("a.pvd"));
+    CHECK(TimeSeries::open(sourceOf(folder.path("a.pvd")))->listing().frames[2].time == 4);
+    const auto lost = writeSeries(*threeFrames(g, "s", false), folder.path("a.nrrd"));
+    REQUIRE(!lost.empty());
+    CHECK_THAT(lost.front(), Contains("do not follow each other at one step"));
+    CHECK_FALSE(TimeSeries::open(sourceOf(folder.path("a.nrrd")))->listing().hasTimes);
+    // A unit that NIfTI has no code for.
+    CHECK_THAT(writeSeries(*threeFrames(g, "days"), folder.path("a.nii")).back(), Contains("'days'"));
+}
+
+TEST_CASE("a frame that cannot be read leaves no file", "[writer]") {
+    const TempFolder folder;
+    SeriesListing listing;
+    listing.frames.resize(3);
+    const auto broken = std::make_shared<TimeSeries>(listing, [](int frame, const JobControl&) {
+        if (frame == 2) throw FileError("broken", "c.raw", "copy it again");
+        return Volume(Geometry{{2, 2, 2}}, SampleArray<std::uint8_t>(std::vector<std::uint8_t>(8, 1)));
+    });
+    for (const char* suffix : {".nrrd", ".mha", ".mhd", ".nii.gz", ".pvd", ".tif", ".zarr"}) {
+        CAPTURE(suffix);
+        CHECK_THROWS_WITH(writeSeries(*broken, folder.path(std::string("a") + suffix)), Contains("broken"));
+        CHECK(folder.fileCount() == 0);
+    }
+}
+
+TEST_CASE("a region and a coarser copy are written where they lie", "[writer]") {
+    const TempFolder folder;
+    Geometry g;
+    g.dims = {6, 4, 4};
+    g.spacing = {1, 2, 3};
+    std::vector<float> values(voxelCount(g.dims));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 6); // x
+    const Volume volume(g, SampleArray<float>(values));
+    writeVolume(volume, folder.path("a.nrrd"), {.region = VoxelRegion{{2, 1, 0}, {6, 3, 4}}});
+    const Volume region = load(folder.path("a.nrrd"));
+    CHECK(region.dims() == Int3(4, 2, 4));
+    CHECK(region.value(0) == 2);
+    CHECK(region.geometry().origin == Vec3(2, 2, 0)); // voxel (2, 1, 0)
+    writeVolume(volume, folder.path("b.nrrd"), {.type = SampleType::F64, .region = {}, .coarser = 2});
+    const Volume coarser = load(folder.path("b.nrrd"));
+    CHECK(coarser.dims() == Int3(3, 2, 2));
+    CHECK(coarser.sampleType() == SampleType::F64);
+    CHECK(coarser.value(1) == 2.5);                        // of 2 and 3
+    CHECK(coarser.geometry().origin == Vec3(0.5, 1, 1.5)); // half a voxel further in
+    CHECK(coarser.geometry().spacing == Vec3(2, 4, 6));
+}
+
+TEST_CASE("a folder of Zarr is replaced by another one, and nothing else is", "[writer]") {
+    const TempFolder folder;
+    const std::string path = folder.path("a.zarr");
+    writeVolume(volumeOf<std::int16_t>(oblique(WorldAxes::File)), path);
+    Geometry g;
+    g.dims = {2, 2, 2};
+    const Volume other(g, SampleArray<std::uint8_t>(std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6, 7, 8}));
+    writeVolume(other, path);
+    CHECK(load(path).samples() == other.samples());
+    CHECK(folder.fileCount() == 1); // nothing is left of the first one
+    std::filesystem::create_directories(folder.path("own.zarr"));
+    std::ofstream(folder.path("own.zarr/letter.txt")) << "keep me";
+    CHECK_THROWS_AS(writeVolume(other, folder.path("own.zarr")), FileError);
+    CHECK(std::filesystem::exists(folder.path("own.zarr/letter.txt")));
+}
+
+TEST_CASE("NIfTI refuses what its header cannot count", "[writer]") {
+    const TempFolder folder;
+    Geometry g;
+    g.dims = {40'000, 1, 1};
+    const Volume volume(g, SampleArray<std::uint8_t>(std::vector<std::uint8_t>(40'000)));
+    CHECK_THROWS_WITH(writeVolume(volume, folder.path("a.nii")), Contains("32767"));
+    CHECK(folder.fileCount() == 0);
 }

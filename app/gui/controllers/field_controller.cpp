@@ -3,9 +3,10 @@
 #include <array>
 
 #include "dialogs/ask_file.h"
+#include "dialogs/save_volume_dialog.h"
 #include "services/services.h"
 #include "store/edits.h"
-#include "volume/loader.h"
+#include "volume/volume_writer.h"
 
 namespace pellucid::gui {
 
@@ -25,8 +26,8 @@ FieldController::FieldController(Services& services)
                                 },
                                 WhenBusy::StopOld, &services.compute()),
       m_saving(
-          [](const File& file, const JobControl&) {
-              writeNrrd(*file.volume, file.path.toStdString());
+          [](const File& file, const JobControl& job) {
+              writeVolume(*file.volume, file.path.toStdString(), {}, job);
               return file.path;
           },
           [this](const File&, const QString& path) {
@@ -158,10 +159,10 @@ void FieldController::save(const QString& path) {
 
 void FieldController::chooseFile() {
     if (m_state != State::Current) return;
-    const QString path = askSavePath(m_services.window(), tr("Save field"), "fieldFolder",
-                                     QString::fromStdString(fileStem(m_shown.kind)) + ".nrrd",
-                                     tr("NRRD volumes (*.nrrd)"), ".nrrd", ".nrrd");
-    if (!path.isEmpty()) save(path);
+    const QString path =
+        askSavePath(m_services.window(), tr("Save field"), "fieldFolder",
+                    QString::fromStdString(fileStem(m_shown.kind)) + ".nrrd", savedVolumeFilters(), {}, {});
+    if (!path.isEmpty()) save(QFileInfo(path).suffix().isEmpty() ? path + ".nrrd" : path);
 }
 
 void FieldController::addActions() {

@@ -1,5 +1,10 @@
 #include "controllers/save_controller.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include <QApplication>
+#include <QClipboard>
 #include <QMessageBox>
 
 #include "controllers/field_controller.h"
@@ -14,6 +19,7 @@
 #include "report/share_bars.h"
 #include "report/tf_plot.h"
 #include "services/services.h"
+#include "session/caption.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
@@ -26,14 +32,20 @@ QString baseName(const Scene& scene) {
     return QFileInfo(QString::fromStdString(scene.volume->title)).completeBaseName();
 }
 
-/// As the panel shows them. Throws Error where they are not measured.
-std::vector<ShareBar> presentBars(Services& services, const PictureSaliencyController& pictureSaliency) {
-    const Scene& scene = services.scene();
+/// Throws Error where they are not there yet.
+const Measures& presentMeasures(Services& services) {
     const Results& results = services.results();
     if (results.failure()) throw *results.failure();
     if (!results.measures() || !results.measuresAreCurrent())
-        throw Error("the bars are still being measured", scene.volume->title, "try again when they are there");
-    std::vector<ShareBar> bars = shareBarsOf(scene.tf, results.measures()->features);
+        throw Error("the bars are still being measured", services.scene().volume->title,
+                    "try again when they are there");
+    return *results.measures();
+}
+
+/// As the panel shows them. Throws likewise.
+std::vector<ShareBar> presentBars(Services& services, const PictureSaliencyController& pictureSaliency) {
+    const Scene& scene = services.scene();
+    std::vector<ShareBar> bars = shareBarsOf(scene.tf, presentMeasures(services).features);
     const std::vector<double> targets = scene.targets();
     for (std::size_t f = 0; f < bars.size(); ++f) {
         bars[f].target = targets.at(f);
@@ -72,14 +84,18 @@ SaveController::SaveController(Services& services, FieldController& fields,
           },
           [this](const ReportTask&, const QString& folder) { m_services.saySaved(folder, tr("with the report")); },
           WhenBusy::Queue, &services.compute()),
-      m_volumes([](const VolumeTask& task,
-                   const JobControl& job) { return writeVolume(*task.volume, task.path.toStdString(), {}, job); },
-                [this](const VolumeTask& task, const std::vector<std::string>& lost) {
-                    m_services.saySaved(task.path);
-                    for (const std::string& notice : lost) m_services.notices().add({QString::fromStdString(notice)});
-                    Q_EMIT volumeSaved(task.path);
-                },
-                WhenBusy::Queue) {
+      m_volumes(
+          [](const VolumeTask& task, const JobControl& job) {
+              const std::string path = task.path.toStdString();
+              return task.volume ? writeVolume(*task.volume, path, task.part, job)
+                                 : writeSeries(*task.series, path, task.part, job);
+          },
+          [this](const VolumeTask& task, const std::vector<std::string>& lost) {
+              m_services.saySaved(task.path);
+              for (const std::string& notice : lost) m_services.notices().add({QString::fromStdString(notice)});
+              Q_EMIT volumeSaved(task.path);
+          },
+          WhenBusy::Queue) {
     for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports, &m_volumes}) {
         connect(job, &JobBase::busyChanged, this, &SaveController::busyChanged);
         connect(job, &JobBase::progress, this, &SaveController::progress);
@@ -104,7 +120,8 @@ void SaveController::addActions() {
              tr("The curve in its colours, over the histogram"), [this] { chooseTfDrawing(); });
     menu.separate();
     menu.add("saveVolumeAction", tr("Save vo&lume as…"), {},
-             tr("The data that is shown, as NRRD, MetaImage, NIfTI, VTK image data, TIFF or OME-Zarr"),
+             tr("The data or the field that is drawn, one frame or all, as NRRD, MetaImage, NIfTI, VTK image data, "
+                "TIFF or OME-Zarr"),
              [this] { chooseVolume(); });
     menu.separate();
     menu.add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), [this] { chooseImage(); },
@@ -113,6 +130,9 @@ void SaveController::addActions() {
         menu.add("saveBarsAction", tr("Save &bars…"), {},
                  tr("How much of each feature is seen and catches the eye, as bar charts in the features' colours"),
                  [this] { chooseBars(); }, {.enabled = [this] { return !m_services.scene().tf.features.empty(); }});
+    menu.add("copyCaptionAction", tr("&Copy caption"), "Ctrl+Alt+Shift+C",
+             tr("What the picture shows, in words: the view, and each feature's measured shares"),
+             [this] { copyCaption(); }, {.enabled = [this] { return !m_services.scene().tf.features.empty(); }});
     menu.add("saveReportAction", tr("Save &report of the last run…"), {},
              tr("One page about the latest optimization: pictures, bars, curves, settings"),
              [this] { chooseReport(*latestRun()); },
@@ -153,6 +173,17 @@ bool SaveController::saveBars(const QString& path) {
     });
 }
 
+void SaveController::copyCaption() {
+    if (!m_services.store().hasVolume()) return;
+    m_services.attempt(tr("Cannot make a caption"), [&] {
+        const Results& results = m_services.results();
+        const Measures& measures = presentMeasures(m_services);
+        const OcclusionMatrix* hides = results.influenceIsCurrent() ? results.occlusion() : nullptr;
+        const CaptionFacts facts = captionFacts(m_services.scene(), measures, hides ? *hides : OcclusionMatrix{});
+        QApplication::clipboard()->setText(QString::fromStdString(caption(facts)));
+    });
+}
+
 bool SaveController::saveTfDrawing(const QString& path) {
     return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the drawing"), [&] {
         const Scene& scene = m_services.scene();
@@ -182,22 +213,50 @@ void SaveController::saveImage(const SaveImageOptions& options) {
     Q_EMIT busyChanged();
 }
 
-void SaveController::saveVolume(const QString& path) {
+void SaveController::saveVolume(const SaveVolumeOptions& options) {
     if (!m_services.store().hasVolume()) return;
-    if (!m_services.attempt(tr("Cannot save the volume"), [&] { checkVolumeSuffix(path.toStdString()); })) return;
-    m_busyText = tr("Saving %1…").arg(QFileInfo(path).fileName());
-    m_volumes.start({m_services.scene().volume, path}, path);
+    if (!m_services.attempt(tr("Cannot save the volume"), [&] { checkVolumeSuffix(options.path.toStdString()); }))
+        return;
+    const Scene& scene = m_services.scene();
+    VolumeTask task{scene.volume, scene.series, options.path, options.part};
+    if (options.allFrames) task.volume.reset();
+    if (options.isField && m_fields.field() != nullptr) task.volume = m_fields.field()->volume;
+    m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());
+    m_volumes.start(std::move(task), options.path);
     Q_EMIT busyChanged();
+}
+
+SavableVolume SaveController::savable() const {
+    const Scene& scene = m_services.scene();
+    const Int3 dims = scene.volume->dims();
+    SavableVolume there{dims, scene.volume->sampleType(), scene.series->size()};
+    there.frameName = QString::fromStdString(scene.series->listing().label(scene.session.frame));
+    if (m_fields.field() != nullptr) there.fieldName = m_fields.name();
+    const Clipping& clip = *scene.session.clipping;
+    if (clip.lo == Vec3(0) && clip.hi == Vec3(1)) return there;
+    VoxelRegion region;
+    for (int a = 0; a < 3; ++a) { // voxels that lie in it, wholly or in part
+        region.lo[a] = static_cast<int>(std::floor(clip.lo[a] * dims[a]));
+        region.hi[a] = std::min(dims[a], std::max(region.lo[a] + 1, static_cast<int>(std::ceil(clip.hi[a] * dims[a]))));
+    }
+    there.clipped = region;
+    return there;
 }
 
 void SaveController::chooseVolume() {
     if (!m_services.store().hasVolume()) return;
-    QStringList filters;
-    for (const auto& [format, patterns] : writtenVolumePatterns())
-        filters << QStringLiteral("%1 (%2)").arg(QString::fromStdString(format), QString::fromStdString(patterns));
-    const QString path = askSavePath(m_services.window(), tr("Save volume as"), "savedVolumeFolder",
-                                     baseName(m_services.scene()) + ".nrrd", filters.join(";;"), {}, {});
-    if (!path.isEmpty()) saveVolume(QFileInfo(path).suffix().isEmpty() ? path + ".nrrd" : path);
+    const QString folder = keptFolder("savedVolumeFolder", QDir::homePath());
+    SaveVolumeDialog dialog(QDir(folder).filePath(baseName(m_services.scene()) + ".nrrd"), savable(),
+                            m_services.window());
+    while (dialog.exec() == QDialog::Accepted) {
+        SaveVolumeOptions options = dialog.options();
+        if (options.path.isEmpty()) continue;
+        if (QFileInfo(options.path).suffix().isEmpty()) options.path += ".nrrd";
+        const QString question = tr("%1 exists. Replace it?").arg(QFileInfo(options.path).fileName());
+        if (!mayReplace(options.path, tr("Save volume"), question)) continue;
+        keepFolderOf("savedVolumeFolder", options.path);
+        return saveVolume(options);
+    }
 }
 
 const Run* SaveController::latestRun() const {

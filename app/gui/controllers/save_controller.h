@@ -4,6 +4,7 @@
 #include <QObject>
 
 #include "dialogs/save_image_dialog.h"
+#include "dialogs/save_volume_dialog.h"
 #include "jobs/job.h"
 #include "session/scene.h"
 
@@ -29,10 +30,13 @@ public:
     /// What each feature shows now, as bar charts, with the targets; .svg or .png. False: it could not be written, and
     /// a dialog says why.
     bool saveBars(const QString& path);
+    /// What the picture shows, in words, onto the clipboard: with the shares of features, once they are measured, and
+    /// what hides what, where the influence is.
+    void copyCaption();
     /// The transfer function over the histogram, as a drawing; .svg or .png. Likewise.
     bool saveTfDrawing(const QString& path);
-    /// The data of the frame that is shown, in the format of the suffix; in the background.
-    void saveVolume(const QString& path);
+    /// The data, or the field that is drawn, in the format of the suffix; in the background.
+    void saveVolume(const SaveVolumeOptions& options);
     /// Of a run with a start: the folder gets report.html, curves.csv, and the session that the run began with; in the
     /// background.
     void saveReport(const Run& run, const QString& folder);
@@ -77,8 +81,10 @@ private:
         QString folder;
     };
     struct VolumeTask {
-        std::shared_ptr<const Volume> volume;
+        std::shared_ptr<const Volume> volume; ///< null: all frames of the series
+        std::shared_ptr<TimeSeries> series;
         QString path;
+        WrittenPart part;
     };
     const Run* latestRun() const; ///< that a report can be made of; null: none
     bool mayReplace(const QString& file, const QString& title, const QString& question); ///< asks where it is there
@@ -86,6 +92,7 @@ private:
     bool chooseTf(bool askForName);
     void chooseImage();
     void chooseVolume();
+    SavableVolume savable() const;
     void chooseBars();
     void chooseTfDrawing();
     /// Asks where a drawing is to go; empty: nowhere.

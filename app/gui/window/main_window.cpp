@@ -19,6 +19,7 @@
 #include "dialogs/closing_buttons.h"
 #include "panels/panel.h"
 #include "panels/probe_panel.h"
+#include "session/caption.h"
 #include "view/annotation_layer.h"
 #include "view/clip_layer.h"
 #include "view/difference_layer.h"
@@ -80,6 +81,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     new NoticeBar(m_services->notices(), middle);
     setCentralWidget(middle);
 
+    connect(&m_services->results(), &Results::changed, m_view, [this] { describePicture(); });
     m_view->overlay().add(std::make_unique<SaliencyLayer>(m_controllers->pictureSaliency, m_view->overlay()));
     m_view->overlay().add(std::make_unique<DifferenceLayer>(m_controllers->comparing, m_view->overlay()));
     m_view->overlay().add(std::make_unique<SliceLayer>());
@@ -226,6 +228,14 @@ void MainWindow::welcome() {
 }
 
 bool MainWindow::isSettled() const { return m_services->isIdle() && m_views->isComplete(); }
+
+void MainWindow::describePicture() {
+    const Results& results = m_services->results();
+    if (!m_services->store().hasVolume() || !results.measures() || !results.measuresAreCurrent()) return;
+    m_view->setAccessibleName(tr("Picture of the volume"));
+    m_view->setAccessibleDescription(
+        QString::fromStdString(altText(captionFacts(m_services->scene(), *results.measures()))));
+}
 
 void MainWindow::updateTitle() {
     SessionStore& store = m_services->store();

@@ -53,6 +53,7 @@ private:
     void togglePanel(QDockWidget& dock, const DockScroll& content);
     void addHelpActions();
     void updateTitle();
+    void describePicture(); ///< to those who hear the window in place of seeing it
 
     std::unique_ptr<Services> m_services;
     std::unique_ptr<Controllers> m_controllers;

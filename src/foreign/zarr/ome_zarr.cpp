@@ -216,8 +216,10 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
     }
     if (const std::size_t at = image.axes.find('t'); at != std::string::npos) {
         image.stepWidth = placements.front().steps[at];
+        image.firstStep = placements.front().offsets[at];
         if (const auto seconds = sizeOfUnit(axes.units[at])) {
             image.stepWidth *= *seconds;
+            image.firstStep *= *seconds;
             image.timeUnit = "s";
         }
     }
@@ -280,7 +282,8 @@ FileContents OmeZarr::contents() const {
     contents.steps = static_cast<int>(shown.size('t'));
     if (shown.stepWidth > 0 && contents.steps > 1 && contents.steps < 1'000'000) {
         contents.timeUnit = shown.timeUnit;
-        for (int step = 0; step < contents.steps; ++step) contents.times.push_back(step * shown.stepWidth);
+        for (int step = 0; step < contents.steps; ++step)
+            contents.times.push_back(shown.firstStep + step * shown.stepWidth);
     }
     if (m_images.size() == 1) return contents;
     for (const Image& image : m_images) {

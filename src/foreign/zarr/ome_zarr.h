@@ -30,7 +30,7 @@ private:
         std::vector<ZarrArray> levels;
         std::string axes; ///< a letter of "tczyx" for each
         Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
-        double stepWidth = 0; ///< in timeUnit; 0: not known
+        double firstStep = 0, stepWidth = 0; ///< in timeUnit; a width of 0: not known
         std::string timeUnit;
         std::vector<std::string> notices;
         std::int64_t size(char axis, std::size_t level = 0) const;

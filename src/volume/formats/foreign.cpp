@@ -4,7 +4,11 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <list>
 #include <map>
+#include <mutex>
+#include <optional>
 
 #include "volume/file_names.h"
 #include "volume/formats/reader.h"
@@ -58,9 +62,66 @@ ReaderRequest arrayRequest(const VolumeSource& source) {
 
 ReaderRequest zarrRequest(const VolumeSource& source) { return requestOf(source, kOfArrays); }
 
+/// A number that is another one once a file has changed that the answer comes from; empty where these are not known, or
+/// too many to look at.
+std::optional<std::size_t> stateOf(const ReaderRequest& request) {
+    constexpr int kMostFiles = 20'000;
+    std::size_t state = 0;
+    int left = kMostFiles;
+    const auto add = [&](const fs::directory_entry& file) {
+        std::error_code ec;
+        for (const std::size_t part :
+             {std::hash<std::string>{}(file.path().string()), static_cast<std::size_t>(file.file_size(ec)),
+              static_cast<std::size_t>(file.last_write_time(ec).time_since_epoch().count())})
+            state = (state ^ part) * 1'099'511'628'211u;
+        return --left == 0;
+    };
+    const fs::path path(request.path);
+    if (isFolder(request.path)) {
+        anyFileBelow(request.path, add);
+    } else if (request.program != kOfDicom) {
+        add(fs::directory_entry(path));
+    } else if (path.filename() == "DICOMDIR") {
+        return {}; // it names files in any folder
+    } else {       // a slice stands for its series
+        for (const std::string& file : filesIn(path.has_parent_path() ? path.parent_path().string() : "."))
+            if (add(fs::directory_entry(file))) break;
+    }
+    return left > 0 ? std::optional(state) : std::nullopt;
+}
+
+/// What describeInProcess() says; the latest answers are kept as long as the files stay as they are. Opening asks
+/// several times what there is, and of a large study each answer takes seconds.
+FileContents described(const ReaderRequest& request, const JobControl& job) {
+    struct Known {
+        std::string program, path, array;
+        std::size_t state;
+        FileContents contents;
+    };
+    constexpr std::size_t kMost = 16;
+    static std::mutex s_mutex;
+    static std::list<Known> s_known; // the latest first
+    const std::optional<std::size_t> state = stateOf(request);
+    const auto isSame = [&](const Known& k) {
+        return k.program == request.program && k.path == request.path && k.array == request.array;
+    };
+    {
+        const std::lock_guard lock(s_mutex);
+        const auto known = std::ranges::find_if(s_known, isSame);
+        if (known != s_known.end() && state && known->state == *state) return known->contents;
+    }
+    FileContents contents = describeInProcess(request, job);
+    if (!state) return contents;
+    const std::lock_guard lock(s_mutex);
+    s_known.remove_if(isSame);
+    s_known.push_front({request.program, request.path, request.array, *state, contents});
+    if (s_known.size() > kMost) s_known.pop_back();
+    return contents;
+}
+
 template <auto requestFor>
 FileContents describe(const VolumeSource& source, const JobControl& job) {
-    return describeInProcess(requestFor(source), job);
+    return described(requestFor(source), job);
 }
 template <auto requestFor>
 Volume read(const VolumeSource& source, const JobControl& job) {

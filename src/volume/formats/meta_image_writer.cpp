@@ -19,40 +19,51 @@ std::string anatomy(const Geometry& geometry) {
     return letters;
 }
 
-std::string headerText(const Volume& volume, const std::string& dataFile) {
+std::string headerText(const FramesToWrite& frames, const std::string& dataFile) {
     constexpr const char* kTypes[] = {"MET_UCHAR", "MET_CHAR", "MET_USHORT", "MET_SHORT",
                                       "MET_UINT",  "MET_INT",  "MET_FLOAT",  "MET_DOUBLE"};
-    const Geometry& g = volume.geometry();
-    std::string text = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = ";
+    const Geometry& g = frames.geometry;
+    const bool several = frames.count > 1;
+    const StepTimes times = frames.times.value_or(StepTimes{});
+    const auto withTime = [&](const std::string& ofSpace, const std::string& ofTime) {
+        return ofSpace + (several ? " " + ofTime : "") + "\n";
+    };
+    std::string text = "ObjectType = Image\nNDims = " + std::string(several ? "4" : "3") +
+                       "\nBinaryData = True\nBinaryDataByteOrderMSB = ";
     text += std::endian::native == std::endian::big ? "True" : "False";
     text += "\nCompressedData = False\nTransformMatrix =";
-    for (int a = 0; a < 3; ++a) text += " " + vectorText(g.directions[a]);
-    text += "\nOffset = " + vectorText(g.origin) + "\nCenterOfRotation = 0 0 0\n";
+    for (int a = 0; a < 3; ++a) text += " " + vectorText(g.directions[a]) + (several ? " 0" : "");
+    text += withTime("", "0 0 0 1") + "Offset = " + withTime(vectorText(g.origin), exactText(times.first)) +
+            "CenterOfRotation = " + withTime("0 0 0", "0");
     if (g.worldAxes == WorldAxes::Patient) text += "AnatomicalOrientation = " + anatomy(g) + "\n";
-    text += "ElementSpacing = " + vectorText(g.spacing) + "\nDimSize = " + std::to_string(g.dims.x) + " " +
-            std::to_string(g.dims.y) + " " + std::to_string(g.dims.z) +
-            "\nElementType = " + kTypes[static_cast<std::size_t>(volume.sampleType())] +
-            "\nElementDataFile = " + dataFile + "\n";
+    text += "ElementSpacing = " + withTime(vectorText(g.spacing), exactText(times.width)) +
+            "DimSize = " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) + " " +
+            withTime(std::to_string(g.dims.z), std::to_string(frames.count)) +
+            "ElementType = " + kTypes[static_cast<std::size_t>(frames.type)] + "\nElementDataFile = " + dataFile + "\n";
     return text;
 }
 
-void write(const Volume& volume, const std::string& path, const JobControl& job) {
+void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
     const std::filesystem::path file(path);
     if (lowerCase(file.extension().string()) == ".mha")
         return writeAtomically(path, [&](OutputFile& out) {
-            out.write(headerText(volume, "LOCAL"));
-            writePieces(out, sampleBytes(volume), job);
+            out.write(headerText(frames, "LOCAL"));
+            writeFrames(out, frames, job);
         });
     std::filesystem::path data = file;
     data.replace_extension(".raw");
-    writeAtomically(data.string(), [&](OutputFile& out) { writePieces(out, sampleBytes(volume), job); });
-    writeTextAtomically(path, headerText(volume, data.filename().string()));
+    requireWritable(path); // before the data are
+    writeAtomically(data.string(), [&](OutputFile& out) { writeFrames(out, frames, job); });
+    writeTextAtomically(path, headerText(frames, data.filename().string()));
+}
+
+std::vector<std::string> losses(const FramesToWrite& frames, const std::string&) {
+    if (!frames.times || frames.times->unit.empty()) return {};
+    return {"MetaImage does not say in what unit times are"};
 }
 
 } // namespace
 
-VolumeWriter metaImageWriter() {
-    return {"MetaImage", {".mha", ".mhd"}, write, [](const Geometry&) { return std::vector<std::string>{}; }};
-}
+VolumeWriter metaImageWriter() { return {"MetaImage", {".mha", ".mhd"}, write, losses}; }
 
 } // namespace pellucid

@@ -4,11 +4,14 @@
 #include <zlib.h>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/joint_file.h"
 #include "base/round_numbers.h"
+#include "base/text.h"
 #include "volume/formats/writer.h"
 #include "volume/loader.h"
 #include "volume/volume_part.h"
+#include "volume/volume_writer.h"
 #include "volume/voxel_loops.h"
 #include "volume/write_field.h"
 
@@ -21,41 +24,44 @@ const char* nrrdType(SampleType type) {
     return kTypes[static_cast<std::size_t>(type)];
 }
 
-std::string headerText(const Geometry& g, SampleType type, const std::string& encoding) {
+std::string headerText(const Geometry& g, SampleType type, const std::string& encoding, int frames = 1,
+                       const std::optional<StepTimes>& times = {}) {
     const auto vector = [](const Vec3& v) {
         return "(" + exactText(v.x) + "," + exactText(v.y) + "," + exactText(v.z) + ")";
     };
     // Without a patient the world has a dimension and no name.
     const Mat3 axes = g.worldFromIndex();
-    std::string text =
-        "NRRD0004\ntype: " + std::string(nrrdType(type)) + "\ndimension: 3\n" +
-        (g.worldAxes == WorldAxes::Patient ? "space: left-posterior-superior" : "space dimension: 3") +
-        "\nsizes: " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) + " " + std::to_string(g.dims.z) +
-        "\nspace directions: " + vector(axes[0]) + " " + vector(axes[1]) + " " + vector(axes[2]) +
-        "\nkinds: domain domain domain\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +
-        "\nencoding: " + encoding + "\nspace origin: " + vector(g.origin) + "\n\n";
-    return text;
+    const bool several = frames > 1;
+    std::string text = "NRRD0004\ntype: " + std::string(nrrdType(type)) + "\ndimension: " + (several ? "4" : "3") +
+                       "\n" +
+                       (g.worldAxes == WorldAxes::Patient ? "space: left-posterior-superior" : "space dimension: 3") +
+                       "\nsizes: " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) + " " +
+                       std::to_string(g.dims.z) + (several ? " " + std::to_string(frames) : "") +
+                       "\nspace directions: " + vector(axes[0]) + " " + vector(axes[1]) + " " + vector(axes[2]) +
+                       (several ? " none" : "") + "\nkinds: domain domain domain" + (several ? " time" : "");
+    if (several && times) // what is said of axes in space is said by their directions
+        text += "\nspacings: nan nan nan " + exactText(times->width) + "\naxis mins: nan nan nan " +
+                exactText(times->first) + "\nunits: \"\" \"\" \"\" \"" + times->unit + "\"";
+    return text + "\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +
+           "\nencoding: " + encoding + "\nspace origin: " + vector(g.origin) + "\n\n";
 }
 
-void writeFile(const std::string& path, const Geometry& geometry, SampleType type, std::span<const std::byte> data,
-               const JobControl& job) {
+void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
     writeAtomically(path, [&](OutputFile& out) {
-        out.write(headerText(geometry, type, "gzip"));
-        deflatePieces(out, {data}, job);
+        out.write(headerText(frames.geometry, frames.type, "gzip", frames.count, frames.times));
+        deflateFrames(out, {}, frames, job);
     });
-}
-
-void write(const Volume& volume, const std::string& path, const JobControl& job) {
-    writeFile(path, volume.geometry(), volume.sampleType(), sampleBytes(volume), job);
 }
 
 } // namespace
 
 VolumeWriter nrrdWriter() {
-    return {"NRRD", {".nrrd"}, write, [](const Geometry&) { return std::vector<std::string>{}; }};
+    return {
+        "NRRD", {".nrrd"}, write, [](const FramesToWrite&, const std::string&) { return std::vector<std::string>{}; }};
 }
 
-void deflatePieces(OutputFile& out, std::initializer_list<std::span<const std::byte>> parts, const JobControl& job) {
+void deflateFrames(OutputFile& out, std::span<const std::byte> head, const FramesToWrite& frames,
+                   const JobControl& job) {
     constexpr int kGzipFrame = 16;
     constexpr int kLevel = 3; // noise does not get smaller at higher levels, only slower
     constexpr std::size_t kPiece = 1u << 24;
@@ -77,26 +83,38 @@ void deflatePieces(OutputFile& out, std::initializer_list<std::span<const std::b
             out.write(packed.data(), packed.size() - stream.avail_out);
         } while (stream.avail_out == 0);
     };
-    for (const std::span<const std::byte> part : parts)
-        for (std::size_t done = 0; done < part.size();) {
-            job.throwIfStopped();
-            const auto piece = part.subspan(done, std::min(kPiece, part.size() - done));
+    if (!head.empty()) put(head, Z_NO_FLUSH);
+    for (int n = 0; n < frames.count; ++n) {
+        const JobControl part = frames.part(n, job);
+        const auto bytes = sampleBytes(frames.frame(n, part));
+        for (std::size_t done = 0; done < bytes.size();) {
+            part.throwIfStopped();
+            const auto piece = bytes.subspan(done, std::min(kPiece, bytes.size() - done));
             put(piece, Z_NO_FLUSH);
             done += piece.size();
-            job.report(static_cast<double>(done) / static_cast<double>(part.size()));
+            part.report(static_cast<double>(done) / static_cast<double>(bytes.size()));
         }
+    }
     put({}, Z_FINISH);
 }
 
-void writeNrrd(const Volume& volume, const std::string& path) { write(volume, path, {}); }
+void writeNrrd(const Volume& volume, const std::string& path) {
+    FramesToWrite one{volume.geometry(), volume.sampleType()};
+    one.frame = [&](int, const JobControl&) -> const Volume& { return volume; };
+    write(one, path, {});
+}
 
 void writeNrrd(const Geometry& geometry, const Grid<float>& values, const std::string& path) {
     PELLUCID_CHECK(values.dims() == geometry.dims);
-    writeFile(path, geometry, SampleType::F32, std::as_bytes(std::span(values.data(), voxelCount(geometry.dims))), {});
+    writeNrrd(Volume(geometry, SampleArray<float>(std::vector<float>(values.begin(), values.end()))), path);
 }
 
-void writeField(const Volume& volume, const Grid<float>& values, const std::string& path) {
-    if (volume.elsewhere() == nullptr) return writeNrrd(volume.geometry(), values, path);
+std::vector<std::string> writeField(const Volume& volume, const Grid<float>& values, const std::string& path) {
+    if (volume.elsewhere() == nullptr)
+        return writeVolume(
+            Volume(volume.geometry(), SampleArray<float>(std::vector<float>(values.begin(), values.end()))), path);
+    if (!lowerCase(path).ends_with(".nrrd"))
+        throw UsageError("several processes write fields as NRRD only", path, "leave the format out");
     PELLUCID_CHECK(values.dims() == volume.dimsHere());
     const Int3 dims = volume.dims();
     const std::string header = headerText(volume.geometry(), SampleType::F32, "raw");
@@ -112,6 +130,7 @@ void writeField(const Volume& volume, const Grid<float>& values, const std::stri
                 file.writeAt(place(row), &values[index], sizeof(float) * static_cast<std::size_t>(voxels));
             });
         });
+    return {};
 }
 
 } // namespace pellucid

@@ -3,10 +3,14 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "volume/excerpt.h"
 #include "volume/formats/writer.h"
@@ -22,14 +26,20 @@ constexpr int kChunk = 64;         ///< voxels along each axis
 constexpr int kSmallestLevel = 64; ///< no coarser copy of what has no more along any axis
 constexpr int kPacking = 3;        ///< noise does not get smaller at higher levels, only slower
 
-json arrayMetadata(const Volume& volume) {
+/// Of one level of all frames.
+json arrayMetadata(const Int3& d, const FramesToWrite& frames) {
     constexpr const char* kTypes[] = {"|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<f4", "<f8"};
-    std::string type = kTypes[static_cast<std::size_t>(volume.sampleType())];
+    std::string type = kTypes[static_cast<std::size_t>(frames.type)];
     if (std::endian::native == std::endian::big && type.front() == '<') type.front() = '>';
-    const Int3 d = volume.dims(), chunk = glm::min(d, Int3(kChunk));
+    const Int3 chunk = glm::min(d, Int3(kChunk));
+    json shape{d.z, d.y, d.x}, chunks{chunk.z, chunk.y, chunk.x};
+    if (frames.count > 1) {
+        shape.insert(shape.begin(), frames.count);
+        chunks.insert(chunks.begin(), 1);
+    }
     return {{"zarr_format", 2},
-            {"shape", {d.z, d.y, d.x}},
-            {"chunks", {chunk.z, chunk.y, chunk.x}},
+            {"shape", shape},
+            {"chunks", chunks},
             {"dtype", type},
             {"compressor", {{"id", "zlib"}, {"level", kPacking}}},
             {"fill_value", 0},
@@ -61,8 +71,8 @@ std::vector<Bytef> packed(const std::vector<std::byte>& bytes) {
     return packed;
 }
 
-void writeArray(OutputFolder& folder, const std::string& name, const Volume& volume, const JobControl& job) {
-    folder.write(name + "/.zarray", arrayMetadata(volume).dump(2));
+/// All chunks of a volume, under `name`.
+void writeChunks(OutputFolder& folder, const std::string& name, const Volume& volume, const JobControl& job) {
     const Int3 size = glm::min(volume.dims(), Int3(kChunk)), count = (volume.dims() - 1) / size + 1;
     std::atomic<std::size_t> done = 0;
     parallelFor(voxelCount(count), [&](std::size_t n) {
@@ -76,43 +86,81 @@ void writeArray(OutputFolder& folder, const std::string& name, const Volume& vol
     });
 }
 
-json transformationsOf(const Geometry& g) {
-    return {{{"type", "scale"}, {"scale", {g.spacing.z, g.spacing.y, g.spacing.x}}},
-            {{"type", "translation"}, {"translation", {g.origin.z, g.origin.y, g.origin.x}}}};
+json transformationsOf(const Geometry& g, const FramesToWrite& frames) {
+    json scale{g.spacing.z, g.spacing.y, g.spacing.x}, translation{g.origin.z, g.origin.y, g.origin.x};
+    if (frames.count > 1) {
+        const StepTimes times = frames.times.value_or(StepTimes{});
+        scale.insert(scale.begin(), times.width);
+        translation.insert(translation.begin(), times.first);
+    }
+    return {{{"type", "scale"}, {"scale", scale}}, {{"type", "translation"}, {"translation", translation}}};
 }
 
-void write(const Volume& volume, const std::string& path, const JobControl& job) {
-    const Geometry& g = volume.geometry();
-    writeFolderAtomically(path, [&](OutputFolder& folder) {
-        json datasets = json::array();
-        const int longest = std::max({g.dims.x, g.dims.y, g.dims.z});
-        for (int factor = 1, level = 0; factor == 1 || longest / factor >= kSmallestLevel; factor *= 2, ++level) {
-            const std::string name = std::to_string(level);
-            if (factor == 1) {
-                writeArray(folder, name, volume, job.part(0, 2));
-                datasets.push_back({{"path", name}, {"coordinateTransformations", transformationsOf(g)}});
-            } else {
-                const Volume coarser = coarserCopy(volume, factor);
-                writeArray(folder, name, coarser, {job.stop, {}});
-                datasets.push_back(
-                    {{"path", name}, {"coordinateTransformations", transformationsOf(coarser.geometry())}});
-            }
-        }
-        json axes = json::array();
-        for (const char* axis : {"z", "y", "x"}) {
-            axes.push_back({{"name", axis}, {"type", "space"}});
-            if (g.worldAxes == WorldAxes::Patient) axes.back()["unit"] = "millimeter";
-        }
-        const json image{{"version", "0.4"}, {"axes", axes}, {"datasets", datasets}, {"type", "mean"}};
+/// How OME-Zarr writes a unit of time; empty: it is left out.
+std::string timeUnit(const std::string& unit) {
+    if (unit == "s") return "second";
+    if (unit == "ms") return "millisecond";
+    if (unit == "µs") return "microsecond";
+    if (unit == "min") return "minute";
+    return unit == "h" ? "hour" : unit == "d" ? "day" : "";
+}
+
+json axesOf(const FramesToWrite& frames) {
+    json axes = json::array();
+    if (frames.count > 1) {
+        axes.push_back({{"name", "t"}, {"type", "time"}});
+        const std::string unit = frames.times ? timeUnit(frames.times->unit) : "";
+        if (!unit.empty()) axes.back()["unit"] = unit;
+    }
+    for (const char* axis : {"z", "y", "x"}) {
+        axes.push_back({{"name", axis}, {"type", "space"}});
+        if (frames.geometry.worldAxes == WorldAxes::Patient) axes.back()["unit"] = "millimeter";
+    }
+    return axes;
+}
+
+/// A frame in all levels; their `datasets`, which are the same for each frame.
+json writeLevels(OutputFolder& folder, int frame, const FramesToWrite& frames, const JobControl& job) {
+    const Volume& volume = frames.frame(frame, job);
+    const int longest = std::max({volume.dims().x, volume.dims().y, volume.dims().z});
+    json datasets = json::array();
+    for (int factor = 1, level = 0; factor == 1 || longest / factor >= kSmallestLevel; factor *= 2, ++level) {
+        std::optional<Volume> coarser;
+        if (factor > 1) coarser = coarserCopy(volume, factor);
+        const Volume& copy = coarser ? *coarser : volume;
+        const std::string name = std::to_string(level);
+        if (frame == 0) folder.write(name + "/.zarray", arrayMetadata(copy.dims(), frames).dump(2));
+        writeChunks(folder, frames.count > 1 ? name + "/" + std::to_string(frame) : name, copy,
+                    factor == 1 ? job.part(0, 2) : JobControl{job.stop, {}});
+        datasets.push_back({{"path", name}, {"coordinateTransformations", transformationsOf(copy.geometry(), frames)}});
+    }
+    return datasets;
+}
+
+/// Whether a folder is one of Zarr, which another one may replace.
+bool isZarr(const std::string& path) {
+    std::error_code ec;
+    return std::ranges::any_of(std::initializer_list<const char*>{".zgroup", ".zarray", "zarr.json"},
+                               [&](const char* name) { return std::filesystem::exists(path + "/" + name, ec); });
+}
+
+void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
+    writeFolderAtomically(path, isZarr, [&](OutputFolder& folder) {
+        json datasets;
+        for (int n = 0; n < frames.count; ++n) datasets = writeLevels(folder, n, frames, frames.part(n, job));
+        const json image{{"version", "0.4"}, {"axes", axesOf(frames)}, {"datasets", datasets}, {"type", "mean"}};
         folder.write(".zattrs", json{{"multiscales", json::array({image})}}.dump(2));
         folder.write(".zgroup", json{{"zarr_format", 2}}.dump(2));
     });
 }
 
-std::vector<std::string> losses(const Geometry& g) {
+std::vector<std::string> losses(const FramesToWrite& frames, const std::string&) {
+    const Geometry& g = frames.geometry;
     std::vector<std::string> lost;
     if (g.directions != Mat3(1)) lost.emplace_back("OME-Zarr has no rotations: the volume will lie along the axes");
     if (g.worldAxes == WorldAxes::Patient) lost.emplace_back("OME-Zarr does not say that places are a patient's");
+    if (frames.times && !frames.times->unit.empty() && timeUnit(frames.times->unit).empty())
+        lost.push_back("OME-Zarr knows no unit of time called " + inQuotes(frames.times->unit));
     return lost;
 }
 

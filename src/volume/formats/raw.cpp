@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "volume/formats/content.h"
+#include "volume/formats/deflate_at_once.h"
+#include "volume/formats/file_check.h"
 #include "volume/formats/inflate_index.h"
 #include "volume/formats/reader.h"
 #include "volume/spacing.h"
@@ -45,13 +47,21 @@ int stepsIn(const VolumeSource& source, std::uint64_t there) {
 /// to. Packed bytes may happen to be a multiple of a step: then they would be read as several, all of them wrong.
 struct RawBytes {
     std::uint64_t stored = 0, count = 0;
-    std::shared_ptr<InflateIndex> index; ///< of gzip
+    bool isPacked = false;
+    std::shared_ptr<InflateIndex>
+        index; ///< of gzip that has been unpacked; empty where its end says that it is one step
 };
 
 RawBytes rawBytes(const VolumeSource& source, const JobControl& job) {
     RawBytes bytes;
     bytes.stored = bytes.count = readableFileBytes(source.path);
-    if (stepsIn(source, bytes.stored) == 1 || !isGzip(source.path)) return bytes;
+    bytes.isPacked = stepsIn(source, bytes.stored) != 1 && isGzip(source.path);
+    if (!bytes.isPacked) return bytes;
+    const std::uint64_t step = source.raw->skipBytes + stepBytes(source);
+    if (!source.frames && step <= kMostAtOnce && lengthAtEnd(source.path) == step) {
+        bytes.count = step;
+        return bytes;
+    }
     bytes.index = InflateIndex::of(source.path, 0, false);
     bytes.count = bytes.index->requireWhole(job);
     return bytes;
@@ -76,15 +86,16 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     if (steps == 0) {
         std::string claim = dimsText(layout.dims) + " of " + name(layout.type) + " are " + std::to_string(bytes);
         if (layout.skipBytes > 0) claim += " after " + std::to_string(layout.skipBytes) + " skipped";
-        const std::string unpacked = there.index ? " that unpack to " + std::to_string(there.count) : std::string();
+        const std::string unpacked = there.isPacked ? " that unpack to " + std::to_string(there.count) : std::string();
         throw FileError("the file has " + std::to_string(there.stored) + " bytes" + unpacked + ", but " + claim, path,
                         "correct its layout", Remedy::CorrectRawLayout);
     }
     FileLayout file;
     file.dataPath = path;
-    file.encoding = there.index ? Encoding::Deflate : Encoding::Raw;
+    file.encoding = there.isPacked ? Encoding::Deflate : Encoding::Raw;
     file.index = there.index;
-    (there.index ? file.skip : file.start) = layout.skipBytes;
+    if (there.isPacked && !there.index) file.unchecked = UncheckedBytes{there.count, true};
+    (there.isPacked ? file.skip : file.start) = layout.skipBytes;
     file.type = valueType(layout.type);
     file.bigEndian = layout.bigEndian;
     file.axes = {{layout.dims.x}, {layout.dims.y}, {layout.dims.z}, {steps}};

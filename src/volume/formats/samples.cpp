@@ -17,6 +17,8 @@
 #include "base/error.h"
 #include "volume/formats/byte_source.h"
 #include "volume/formats/bzip2_bytes.h"
+#include "volume/formats/deflate_at_once.h"
+#include "volume/formats/file_check.h"
 #include "volume/formats/inflate_index.h"
 #include "volume/spacing.h"
 
@@ -107,43 +109,82 @@ public:
     virtual ~Values() = default;
     virtual void read(char* to, std::size_t values) = 0;
     virtual void skip(std::uint64_t values) = 0;
+    /// Behind the last read: throws FileError unless what was read is sound.
+    virtual void finish() {}
 };
+
+/// Whether all values of a stream are wanted, so that it may be unpacked in one go.
+enum class Wanted { Some, All };
+
+/// The bytes of each T in reverse.
+template <class T>
+void swapBytes(char* bytes, std::size_t count) {
+    for (char* value = bytes; value != bytes + count; value += sizeof(T)) {
+        std::array<char, sizeof(T)> swapped;
+        for (std::size_t i = 0; i < sizeof(T); ++i) swapped[i] = value[sizeof(T) - 1 - i];
+        std::memcpy(value, swapped.data(), sizeof(T));
+    }
+}
 
 template <class T>
 class BinaryValues final : public Values {
 public:
-    BinaryValues(const StoredValues& stored, const JobControl& job)
+    BinaryValues(const StoredValues& stored, Wanted wanted, const JobControl& job)
         : m_path(stored.dataPath),
-          m_swap(sizeof(T) > 1 && stored.bigEndian != (std::endian::native == std::endian::big)) {
+          m_swap(sizeof(T) > 1 && stored.bigEndian != (std::endian::native == std::endian::big)),
+          m_unchecked(stored.unchecked) {
         if (stored.open)
             m_bytes = stored.open(job);
         else if (stored.encoding == Encoding::Deflate && stored.index)
             m_bytes = stored.index->bytes(job);
         else if (stored.encoding == Encoding::Deflate || stored.encoding == Encoding::Bzip2)
-            m_bytes = unpackedBytes(stored, job);
+            openPacked(stored, wanted, job);
         else if (stored.encoding == Encoding::Hex)
             m_bytes = std::make_unique<HexBytes>(m_path, stored.start, job);
         else
             m_bytes = std::make_unique<FileBytes>(m_path, stored.start, job);
-        if (!m_bytes->skip(stored.skip)) failEarly(m_path, 0);
+        if (!m_bytes->skip(stored.skip)) fail(0);
     }
     void read(char* to, std::size_t values) override {
         const std::size_t bytes = values * sizeof(T);
         const std::size_t there = m_bytes->read(to, bytes);
-        if (there < bytes) failEarly(m_path, m_done + there);
+        if (there < bytes) fail(m_done + there);
         m_done += bytes;
-        if (m_swap)
-            for (char* value = to; value != to + bytes; value += sizeof(T)) std::reverse(value, value + sizeof(T));
+        if (m_swap) swapBytes<T>(to, bytes);
     }
     void skip(std::uint64_t values) override {
-        if (values > 0 && !m_bytes->skip(values * sizeof(T))) failEarly(m_path, m_done);
+        if (values > 0 && !m_bytes->skip(values * sizeof(T))) fail(m_done);
         m_done += values * sizeof(T);
+    }
+    void finish() override {
+        if (!m_unchecked) return;
+        if (!m_unchecked->toEnd) return requireSound(*m_packed, m_unchecked->bytes, m_path);
+        const std::uint64_t all = requireSoundToEnd(*m_packed, m_unchecked->bytes, m_path);
+        if (all != m_unchecked->bytes)
+            throw FileError("the file unpacks to " + std::to_string(all) + " bytes, of which its layout takes " +
+                                std::to_string(m_unchecked->bytes),
+                            m_path, "correct its layout", Remedy::CorrectRawLayout);
     }
 
 private:
+    void openPacked(const StoredValues& stored, Wanted wanted, const JobControl& job) {
+        std::unique_ptr<UnpackedBytes> bytes;
+        if (m_unchecked && wanted == Wanted::All && stored.encoding == Encoding::Deflate)
+            bytes = unpackedAtOnce(m_path, stored.start, stored.zlib, m_unchecked->bytes, m_unchecked->toEnd, job);
+        if (!bytes) bytes = unpackedBytes(stored, job);
+        m_packed = bytes.get();
+        m_bytes = std::move(bytes);
+    }
+    [[noreturn]] void fail(std::uint64_t bytes) const {
+        if (m_unchecked) failToUnpack(*m_packed, m_unchecked->bytes, m_path);
+        failEarly(m_path, bytes);
+    }
+
     std::string m_path;
     bool m_swap;
+    std::optional<UncheckedBytes> m_unchecked;
     std::unique_ptr<ByteSource> m_bytes;
+    UnpackedBytes* m_packed = nullptr; // m_bytes, where they are unpacked
     std::uint64_t m_done = 0;
 };
 
@@ -196,9 +237,9 @@ private:
 };
 
 template <class T>
-std::unique_ptr<Values> openStored(const StoredValues& stored, const JobControl& job) {
+std::unique_ptr<Values> openStored(const StoredValues& stored, Wanted wanted, const JobControl& job) {
     if (stored.encoding == Encoding::Text) return std::make_unique<TextValues<T>>(stored, job);
-    return std::make_unique<BinaryValues<T>>(stored, job);
+    return std::make_unique<BinaryValues<T>>(stored, wanted, job);
 }
 
 /// Those of several files, one file after the other. Files that are passed over stay closed.
@@ -206,8 +247,8 @@ template <class T>
 class PartValues final : public Values {
 public:
     /// `each`: values of one part.
-    PartValues(const std::vector<StoredValues>& parts, std::uint64_t each, const JobControl& job)
-        : m_parts(parts), m_each(each), m_job(job) {}
+    PartValues(const std::vector<StoredValues>& parts, std::uint64_t each, Wanted wanted, const JobControl& job)
+        : m_parts(parts), m_each(each), m_wanted(wanted), m_job(job) {}
     void read(char* to, std::size_t values) override {
         while (values > 0) {
             goToPart();
@@ -220,13 +261,17 @@ public:
         }
     }
     void skip(std::uint64_t values) override { m_at += values; }
+    void finish() override {
+        if (m_values) m_values->finish();
+    }
 
 private:
     /// Opens the part that has the value m_at, and passes over those before it.
     void goToPart() {
         const std::uint64_t part = m_at / m_each;
         if (!m_values || part != m_part) {
-            m_values = openStored<T>(m_parts.at(static_cast<std::size_t>(part)), m_job);
+            finish();
+            m_values = openStored<T>(m_parts.at(static_cast<std::size_t>(part)), m_wanted, m_job);
             m_part = part;
             m_openAt = part * m_each;
         }
@@ -236,6 +281,7 @@ private:
 
     const std::vector<StoredValues>& m_parts;
     const std::uint64_t m_each;
+    const Wanted m_wanted;
     const JobControl& m_job;
     std::unique_ptr<Values> m_values;     // of m_part
     std::uint64_t m_at = 0, m_openAt = 0; // the next value of all, and the one that m_values comes to next
@@ -243,9 +289,10 @@ private:
 };
 
 template <class T>
-std::unique_ptr<Values> openValues(const FileLayout& layout, const JobControl& job) {
-    if (layout.parts.empty()) return openStored<T>(layout, job);
-    return std::make_unique<PartValues<T>>(layout.parts, valuesIn(layout, layout.dataPath) / layout.parts.size(), job);
+std::unique_ptr<Values> openValues(const FileLayout& layout, Wanted wanted, const JobControl& job) {
+    if (layout.parts.empty()) return openStored<T>(layout, wanted, job);
+    const std::uint64_t each = valuesIn(layout, layout.dataPath) / layout.parts.size();
+    return std::make_unique<PartValues<T>>(layout.parts, each, wanted, job);
 }
 
 /// Hands out the values of voxels that follow each other at one stride, in the order of the file.
@@ -333,6 +380,7 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
                                     kept[done++] = convert(piece[v * selection.stride[0]]);
                                 progress.add(static_cast<std::size_t>(voxels));
                             });
+    values.finish();
     return {std::move(kept), {0, -1}};
 }
 
@@ -350,6 +398,7 @@ Collected collectPlain(Values& values, const Selection& selection, const JobCont
         done += count;
         progress.add(count);
     }
+    values.finish();
     return {std::move(kept), {0, -1}};
 }
 
@@ -368,6 +417,8 @@ public:
     virtual bool areGapless() const { return false; }
     /// The values of `count` voxels along x, from `first` on; of whole rows, more than one where areGapless().
     virtual void read(const Int3& first, int count, T* to) = 0;
+    /// Behind the last read: throws FileError unless what was read is sound.
+    virtual void finish() {}
 };
 
 template <class T>
@@ -386,6 +437,7 @@ public:
         });
     }
     bool areGapless() const override { return isGapless(m_selection); }
+    void finish() override { m_values->finish(); }
 
 private:
     std::unique_ptr<Values> m_values;
@@ -441,7 +493,7 @@ private:
         selection.stride[0] = m_whole.components;
         selection.stride[1] = selection.stride[0] * static_cast<std::uint64_t>(dims.x);
         selection.stride[2] = selection.stride[1] * static_cast<std::uint64_t>(dims.y);
-        piece.rows = std::make_unique<StoredRows<T>>(openStored<T>(piece.file->values, m_job), selection);
+        piece.rows = std::make_unique<StoredRows<T>>(openStored<T>(piece.file->values, Wanted::Some, m_job), selection);
         ++m_open;
     }
     void close(Piece& piece) {
@@ -459,7 +511,8 @@ private:
 
 template <class T>
 std::unique_ptr<Rows<T>> openRows(const FileLayout& layout, const Selection& selection, const JobControl& job) {
-    if (layout.pieces.empty()) return std::make_unique<StoredRows<T>>(openValues<T>(layout, job), selection);
+    if (layout.pieces.empty())
+        return std::make_unique<StoredRows<T>>(openValues<T>(layout, Wanted::Some, job), selection);
     return std::make_unique<PieceRows<T>>(layout.pieces, selection, job);
 }
 
@@ -493,6 +546,7 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
         if (k % plan.factors.z == plan.factors.z - 1 || k == size.z - 1)
             means.takeTo(kept.data() + layer * static_cast<std::size_t>(k / plan.factors.z));
     }
+    rows.finish();
     return {SampleArray<Kept>(std::move(kept), voxelCount(plan.dims)), asItIs ? ValueRange{0, -1} : means.range()};
 }
 
@@ -539,11 +593,11 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
     const bool byRows = !plan.isWhole() || !layout.pieces.empty();
     if constexpr (std::is_same_v<T, Kept>)
         if (!byRows && !layout.scaling && isGapless(selection))
-            return collectPlain<T>(*openValues<T>(layout, job), selection, job);
+            return collectPlain<T>(*openValues<T>(layout, Wanted::All, job), selection, job);
     const auto read = [&](const auto& convert) {
         return byRows
                    ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, job), plan, source.missing, job, convert)
-                   : collect<T, Kept>(*openValues<T>(layout, job), selection, job, convert);
+                   : collect<T, Kept>(*openValues<T>(layout, Wanted::All, job), selection, job, convert);
     };
     if (!layout.scaling) return read([](T value) { return static_cast<Kept>(value); });
     bool isBeyond = false;
@@ -557,6 +611,14 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
         throw FileError("some values, scaled as the header says, are larger than samples of this type can be",
                         source.path, "correct the scaling in the header");
     return scaled;
+}
+
+/// Whether packed data may be unpacked into as much memory as the header claims before it has been checked: not much,
+/// or what the stream says itself, or what such data usually unpacks to.
+bool isBelievable(const StoredValues& values, std::uint64_t stored, std::uint64_t bytes) {
+    constexpr std::uint64_t kLittle = 256u << 20, kUsual = 8;
+    return bytes <= kLittle || bytes / kUsual <= stored ||
+           (values.encoding == Encoding::Deflate && lengthAtEnd(values.dataPath) == bytes % (std::uint64_t{1} << 32));
 }
 
 } // namespace
@@ -588,7 +650,10 @@ void requireData(FileLayout& layout, std::uint64_t stored, std::uint64_t wanted,
         requireNumbers(layout.dataPath, layout.start, wanted, job);
     } else if (layout.encoding == Encoding::Bzip2 ||
                (layout.encoding == Encoding::Deflate && selectionOf(layout, 0, 0).steps == 1)) {
-        requireSound(*unpackedBytes(layout, job), bytes, layout.dataPath);
+        if (isBelievable(layout, stored, bytes))
+            layout.unchecked = UncheckedBytes{bytes};
+        else
+            requireSound(*unpackedBytes(layout, job), bytes, layout.dataPath);
     } else if (layout.encoding == Encoding::Deflate) {
         layout.index = InflateIndex::of(layout.dataPath, layout.start, layout.zlib);
         layout.index->require(bytes, job);

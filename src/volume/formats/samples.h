@@ -14,6 +14,7 @@
 #include "volume/file_contents.h"
 #include "volume/formats/file_check.h"
 #include "volume/loader.h"
+#include "volume/step_times.h"
 
 namespace pellucid {
 
@@ -43,13 +44,13 @@ struct ValueScaling {
     double slope = 1, intercept = 0;
 };
 
-/// When the steps of a file are: first, first + width, …
-struct StepTimes {
-    double first = 0, width = 1;
-    std::string unit; ///< "s", "ms", …; empty: not known
-};
-
 class InflateIndex;
+
+/// Bytes of unpacked data that are found sound, or not, when they are read.
+struct UncheckedBytes {
+    std::uint64_t bytes = 0; ///< as many from the first one on, > 0
+    bool toEnd = false;      ///< they are all that there is: headerless files
+};
 
 /// Where values are, and how they are stored.
 struct StoredValues {
@@ -62,7 +63,8 @@ struct StoredValues {
     bool bigEndian = false; ///< no matter for Text
     /// Where given: the bytes of the values, in place of `encoding`, `start` and `skip` (raw to those who ask).
     std::function<std::unique_ptr<ByteSource>(const JobControl&)> open;
-    std::shared_ptr<InflateIndex> index; ///< of Deflate with several steps: where to read on
+    std::shared_ptr<InflateIndex> index;     ///< of Deflate with several steps: where to read on
+    std::optional<UncheckedBytes> unchecked; ///< Deflate without index, Bzip2; empty: they have been checked
 };
 
 /// A box of a volume that is stored by itself: x fastest, all components of a voxel beside each other.
@@ -106,9 +108,11 @@ std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
 /// otherwise all.
 std::uint64_t valuesUpTo(const FileLayout& layout, int step);
 
-/// Throws FileError unless the data file holds `wanted` values, `stored` bytes of it beginning at layout.start. Unpacks
-/// or reads them without keeping them; where compressed data have several steps, layout.index is made, and no byte is
-/// checked twice as long as the file stays the same. Bytes left over become a notice. `toDo` advises what to check.
+/// Throws FileError unless the data file holds `wanted` values, `stored` bytes of it beginning at layout.start. Numbers
+/// written out are read without keeping them. Compressed data are left to be checked as they are read
+/// (layout.unchecked), unless the header claims much more memory than there is reason to believe; where they have
+/// several steps, layout.index is made, and no byte is checked twice as long as the file stays the same. Bytes left
+/// over become a notice. `toDo` advises what to check.
 void requireData(FileLayout& layout, std::uint64_t stored, std::uint64_t wanted, const char* toDo,
                  const JobControl& job);
 

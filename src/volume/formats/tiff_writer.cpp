@@ -1,5 +1,6 @@
-// Writes TIFF: a page for each slice, as they are; OME-XML says how far slices are from each other. Values first, pages
-// behind them, so that nothing has to be written twice (TIFF 6.0, sections 2 and 8; BigTIFF where 4 GB are not enough).
+// Writes TIFF: a page for each slice of each frame, as they are; OME-XML says how far slices are from each other.
+// Values first, pages behind them, so that nothing has to be written twice (TIFF 6.0, sections 2 and 8; BigTIFF where 4
+// GB are not enough).
 #include <bit>
 #include <cstring>
 
@@ -12,9 +13,12 @@ namespace {
 
 constexpr std::uint64_t kMostSmall = 4'000'000'000; ///< bytes of values that offsets of 32 bits can reach behind
 
-std::string descriptionOf(const Volume& volume) {
+/// How OME-XML writes a unit of time; empty: it has none of this name.
+std::string timeUnit(const std::string& unit) { return unit == "s" || unit == "ms" || unit == "µs" ? unit : ""; }
+
+std::string descriptionOf(const FramesToWrite& frames) {
     constexpr const char* kTypes[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float", "double"};
-    const Geometry& g = volume.geometry();
+    const Geometry& g = frames.geometry;
     const auto attribute = [](const std::string& name, const std::string& value) {
         return " " + name + "=\"" + value + "\"";
     };
@@ -25,12 +29,16 @@ std::string descriptionOf(const Volume& volume) {
                  attribute("PhysicalSize" + axis, exactText(g.spacing[a]));
         if (g.worldAxes == WorldAxes::Patient) sizes += attribute("PhysicalSize" + axis + "Unit", "mm");
     }
+    if (frames.times && !timeUnit(frames.times->unit).empty())
+        sizes += attribute("TimeIncrement", exactText(frames.times->width)) +
+                 attribute("TimeIncrementUnit", timeUnit(frames.times->unit));
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?><OME xmlns=\"http://www.openmicroscopy.org/Schemas/OME/2016-06\">"
            "<Image ID=\"Image:0\"><Pixels ID=\"Pixels:0\" DimensionOrder=\"XYZCT\"" +
-           attribute("Type", kTypes[static_cast<std::size_t>(volume.sampleType())]) + sizes +
-           " SizeC=\"1\" SizeT=\"1\"><Channel ID=\"Channel:0:0\" SamplesPerPixel=\"1\"/><TiffData IFD=\"0\" "
+           attribute("Type", kTypes[static_cast<std::size_t>(frames.type)]) + sizes +
+           attribute("SizeT", std::to_string(frames.count)) +
+           " SizeC=\"1\"><Channel ID=\"Channel:0:0\" SamplesPerPixel=\"1\"/><TiffData IFD=\"0\" "
            "PlaneCount=\"" +
-           std::to_string(g.dims.z) + "\"/></Pixels></Image></OME>";
+           std::to_string(static_cast<std::int64_t>(g.dims.z) * frames.count) + "\"/></Pixels></Image></OME>";
 }
 
 /// Numbers as a TIFF file of one kind has them.
@@ -89,11 +97,12 @@ private:
 };
 
 /// Of the slice whose values stand at `offset`. `text`: where the description stands; 0: it has none.
-Directory pageOf(const Volume& volume, bool isLarge, std::uint64_t offset, std::uint64_t text, std::size_t letters) {
+Directory pageOf(const FramesToWrite& frames, bool isLarge, std::uint64_t offset, std::uint64_t text,
+                 std::size_t letters) {
     using Type = Directory::Type;
-    const auto [nx, ny] =
-        std::pair(static_cast<std::uint64_t>(volume.dims().x), static_cast<std::uint64_t>(volume.dims().y));
-    const SampleType type = volume.sampleType();
+    const Int3& dims = frames.geometry.dims;
+    const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
+    const SampleType type = frames.type;
     const std::uint64_t bytes = bytesPerSample(type);
     const bool isFloat = type == SampleType::F32 || type == SampleType::F64;
     const bool isSigned = type == SampleType::I8 || type == SampleType::I16 || type == SampleType::I32;
@@ -113,17 +122,18 @@ Directory pageOf(const Volume& volume, bool isLarge, std::uint64_t offset, std::
     return page;
 }
 
-void write(const Volume& volume, const std::string& path, const JobControl& job) {
-    const auto values = sampleBytes(volume);
-    const bool isLarge = values.size() > kMostSmall;
-    const std::uint64_t slice = layerSize(volume.dims()) * bytesPerSample(volume.sampleType());
-    const auto slices = static_cast<std::uint64_t>(volume.dims().z);
-    std::string text = descriptionOf(volume);
+void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
+    const Int3& dims = frames.geometry.dims;
+    const std::uint64_t slice = layerSize(dims) * bytesPerSample(frames.type);
+    const std::uint64_t slices = static_cast<std::uint64_t>(dims.z) * static_cast<std::uint64_t>(frames.count);
+    const std::uint64_t bytes = slices * slice;
+    const bool isLarge = bytes > kMostSmall;
+    std::string text = descriptionOf(frames);
     text.resize(text.size() + 1); // it ends with a zero
     const std::size_t letters = text.size();
     const std::uint64_t header = isLarge ? 16 : 8, first = (header + letters + 15) / 16 * 16; // of the values
     text.resize(static_cast<std::size_t>(first - header));
-    const std::uint64_t pages = (first + values.size() + 15) / 16 * 16;
+    const std::uint64_t pages = (first + bytes + 15) / 16 * 16;
     writeAtomically(path, [&](OutputFile& out) {
         const auto put = [&](auto number) { out.write(&number, sizeof number); };
         out.write(std::endian::native == std::endian::little ? "II" : "MM");
@@ -137,20 +147,27 @@ void write(const Volume& volume, const std::string& path, const JobControl& job)
             put(static_cast<std::uint32_t>(pages));
         }
         out.write(text);
-        writePieces(out, values, job);
-        out.write(std::string(static_cast<std::size_t>(pages - first - values.size()), '\0'));
+        writeFrames(out, frames, job);
+        out.write(std::string(static_cast<std::size_t>(pages - first - bytes), '\0'));
         std::uint64_t at = pages;
         for (std::uint64_t n = 0; n < slices; ++n) {
-            Directory page = pageOf(volume, isLarge, first + n * slice, n == 0 ? header : 0, letters);
+            Directory page = pageOf(frames, isLarge, first + n * slice, n == 0 ? header : 0, letters);
             at += page.size();
             out.write(page.bytes(n + 1 < slices ? at : 0));
         }
     });
 }
 
-std::vector<std::string> losses(const Geometry& g) {
-    if (g.directions == Mat3(1) && g.origin == Vec3(0) && g.worldAxes == WorldAxes::File) return {};
-    return {"TIFF says how far voxels are from each other, but not where they lie in the world"};
+std::vector<std::string> losses(const FramesToWrite& frames, const std::string&) {
+    const Geometry& g = frames.geometry;
+    std::vector<std::string> lost;
+    if (g.directions != Mat3(1) || g.origin != Vec3(0) || g.worldAxes != WorldAxes::File)
+        lost.emplace_back("TIFF says how far voxels are from each other, but not where they lie in the world");
+    if (frames.times && timeUnit(frames.times->unit).empty())
+        lost.emplace_back("TIFF keeps times in seconds, milliseconds or microseconds only: these are lost");
+    else if (frames.times && frames.times->first != 0)
+        lost.emplace_back("TIFF does not say when the first frame is: times begin at 0");
+    return lost;
 }
 
 } // namespace

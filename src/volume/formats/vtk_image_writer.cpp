@@ -1,6 +1,10 @@
-// Writes VTK image data (.vti): samples of points, appended as they are.
+// Writes VTK image data (.vti): samples of points, appended as they are; several frames as a file each, and a
+// collection
+// (.pvd) that names them.
 #include <bit>
+#include <filesystem>
 
+#include "base/error.h"
 #include "base/round_numbers.h"
 #include "volume/formats/writer.h"
 
@@ -27,7 +31,7 @@ std::string headerText(const Volume& volume) {
            "<AppendedData encoding=\"raw\">\n_";
 }
 
-void write(const Volume& volume, const std::string& path, const JobControl& job) {
+void writeImage(const Volume& volume, const std::string& path, const JobControl& job) {
     writeAtomically(path, [&](OutputFile& out) {
         const auto bytes = sampleBytes(volume);
         const std::uint64_t count = bytes.size();
@@ -38,13 +42,70 @@ void write(const Volume& volume, const std::string& path, const JobControl& job)
     });
 }
 
-std::vector<std::string> losses(const Geometry& g) {
-    if (g.worldAxes != WorldAxes::Patient) return {};
-    return {"VTK image data does not say that places are a patient's"};
+std::string inXml(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) {
+        if (c == '&')
+            escaped += "&amp;";
+        else if (c == '<')
+            escaped += "&lt;";
+        else if (c == '"')
+            escaped += "&quot;";
+        else
+            escaped += c;
+    }
+    return escaped;
+}
+
+bool isCollection(const std::string& path) { return lowerCase(path).ends_with(".pvd"); }
+
+/// "name_007.vti" beside "name.pvd", with as many digits as the last one needs.
+std::filesystem::path fileOf(int frame, const FramesToWrite& frames, const std::filesystem::path& collection) {
+    std::string number = std::to_string(frame);
+    const std::size_t digits = std::to_string(frames.count - 1).size();
+    number.insert(0, digits - number.size(), '0');
+    return collection.parent_path() / (collection.stem().string() + "_" + number + ".vti");
+}
+
+void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
+    if (!isCollection(path)) return writeImage(frames.frame(0, job), path, job);
+    requireWritable(path);
+    std::vector<std::filesystem::path> files;
+    try {
+        std::string entries;
+        for (int n = 0; n < frames.count; ++n) {
+            const std::filesystem::path file = fileOf(n, frames, path);
+            const JobControl part = frames.part(n, job);
+            writeImage(frames.frame(n, part), file.string(), part);
+            files.push_back(file);
+            const double time = frames.frameTimes.empty() ? n : frames.frameTimes[static_cast<std::size_t>(n)];
+            entries += "<DataSet timestep=\"" + exactText(time) + "\" part=\"0\" file=\"" +
+                       inXml(file.filename().string()) + "\"/>\n";
+        }
+        writeTextAtomically(path,
+                            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n" +
+                                entries + "</Collection>\n</VTKFile>\n");
+    } catch (...) {
+        std::error_code ec;
+        for (const std::filesystem::path& file : files) std::filesystem::remove(file, ec);
+        throw;
+    }
+}
+
+std::vector<std::string> losses(const FramesToWrite& frames, const std::string& path) {
+    if (frames.count > 1 && !isCollection(path))
+        throw UsageError("a .vti file has one frame", path,
+                         "give a name that ends in .pvd: it becomes a collection of .vti files");
+    std::vector<std::string> lost;
+    if (frames.geometry.worldAxes == WorldAxes::Patient)
+        lost.emplace_back("VTK image data does not say that places are a patient's");
+    if (frames.times && !frames.times->unit.empty())
+        lost.emplace_back("a collection of VTK does not say in what unit times are");
+    return lost;
 }
 
 } // namespace
 
-VolumeWriter vtiWriter() { return {"VTK image data", {".vti"}, write, losses}; }
+VolumeWriter vtiWriter() { return {"VTK image data", {".vti", ".pvd"}, write, losses}; }
 
 } // namespace pellucid

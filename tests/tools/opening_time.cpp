@@ -1,0 +1,119 @@
+// How long loadVolume() takes of files that the system's cache holds, against what has to be done at least: of raw data
+// a copy in memory, of gzip what libdeflate takes, of formats that libraries read the same in this process. Told as
+// ratios of medians, both measured in turn.
+//
+//     opening_time_tiff [--raw LAYOUT] [--rounds N] FILE...
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <libdeflate.h>
+
+#include "base/mapped_file.h"
+#include "base/stopwatch.h"
+#include "foreign/foreign_volume.h"
+#include "volume/loader.h"
+
+using namespace pellucid;
+
+namespace {
+
+struct Least {
+    std::string what;
+    std::function<void()> run;
+};
+
+std::shared_ptr<const MappedFile> mapped(const std::string& path) {
+    auto file = MappedFile::map(path, 0, bytesOfFile(path));
+    if (!file) throw FileError("it cannot be mapped", path, "choose another file");
+    return file;
+}
+
+Least copyOf(const std::string& path) {
+    return {"memcpy", [file = mapped(path)] {
+                const auto copy = std::make_unique_for_overwrite<char[]>(file->size());
+                std::memcpy(copy.get(), file->data(), file->size());
+            }};
+}
+
+/// Of the gzip stream behind an empty line, as in NRRD, or of the whole file.
+Least inflated(const std::string& path, std::size_t bytes) {
+    const auto file = mapped(path);
+    const std::string head(reinterpret_cast<const char*>(file->data()), std::min<std::size_t>(file->size(), 4096));
+    const std::size_t blank = head.find("\n\n"), start = head.starts_with("NRRD") ? blank + 2 : 0;
+    return {"libdeflate", [file, start, bytes] {
+                const auto to = std::make_unique_for_overwrite<char[]>(bytes);
+                libdeflate_decompressor* const decompressor = libdeflate_alloc_decompressor();
+                std::size_t made = 0;
+                const auto result = libdeflate_gzip_decompress(decompressor, file->data() + start, file->size() - start,
+                                                               to.get(), bytes, &made);
+                libdeflate_free_decompressor(decompressor);
+                if (result != LIBDEFLATE_SUCCESS) throw Error("libdeflate does not unpack it", "", "");
+            }};
+}
+
+Least inProcess(const std::string& path) {
+    return {"in process", [path] {
+                const auto before = [](std::uint64_t) {};
+                const auto volume = openForeign(path, {}, before);
+                const ReaderLayout layout = volume->layout(0);
+                ReaderBox box;
+                box.region = {Int3(0), dimsOf(layout, 0)};
+                std::vector<std::byte> voxels(bytesOf(box, layout, path));
+                volume->read(0, box, voxels, before, {});
+            }};
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+}
+
+void compare(const VolumeSource& source, int rounds) {
+    const Volume first = loadVolume(source);
+    const std::string& path = source.path;
+    const std::size_t bytes = first.size() * bytesPerSample(first.sampleType());
+    const bool isGzip = path.ends_with(".gz") || first.format == "NRRD";
+    const Least least = first.format == "raw" && !isGzip ? copyOf(path)
+                        : isGzip                         ? inflated(path, bytes + (path.ends_with(".nii.gz") ? 352 : 0))
+                                                         : inProcess(path);
+    std::vector<double> whole, part;
+    for (int n = 0; n < rounds; ++n) {
+        const Stopwatch one;
+        static_cast<void>(loadVolume(source));
+        whole.push_back(one.seconds());
+        const Stopwatch other;
+        least.run();
+        part.push_back(other.seconds());
+    }
+    std::printf("%s: %.1f MB in %.3f s, %s %.3f s, ratio %.2f\n", path.c_str(), 1e-6 * static_cast<double>(bytes),
+                median(whole), least.what.c_str(), median(part), median(whole) / median(part));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    VolumeSource source;
+    int rounds = 7;
+    try {
+        for (int n = 1; n < argc; ++n) {
+            const std::string word = argv[n];
+            if (word == "--raw" && n + 1 < argc) {
+                source.raw = parseRawLayout(argv[++n]);
+            } else if (word == "--rounds" && n + 1 < argc) {
+                rounds = std::atoi(argv[++n]);
+            } else {
+                source.path = word;
+                compare(source, std::max(rounds, 1));
+                source.raw.reset();
+            }
+        }
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 1;
+    }
+}
