@@ -91,26 +91,29 @@ std::optional<std::size_t> unpackMember(libdeflate_decompressor* decompressor, b
 
 } // namespace
 
-std::unique_ptr<UnpackedBytes> unpackedAtOnce(const std::string& path, std::uint64_t start, bool zlib,
-                                              std::uint64_t bytes, bool toEnd, const JobControl& job) {
-    if (bytes == 0 || bytes > kMostAtOnce || availableMemoryBytes() / 2 < bytes) return {};
+bool unpackAtOnce(const std::string& path, std::uint64_t start, bool zlib, bool toEnd, std::span<char> to,
+                  const JobControl& job) {
+    if (to.empty() || to.size() > kMostAtOnce) return false;
     const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor(
         libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
-    if (!decompressor) return {};
-    job.throwIfStopped();
+    if (!decompressor) return false;
     const Packed file(path, start);
     std::span<const unsigned char> packed = file.bytes();
-    const auto count = static_cast<std::size_t>(bytes);
-    auto unpacked = std::make_unique_for_overwrite<char[]>(count);
-    for (std::size_t done = 0; done < count;) {
+    for (std::size_t done = 0; done < to.size();) {
         job.throwIfStopped();
-        const auto made =
-            unpackMember(decompressor.get(), zlib && done == 0, packed, {unpacked.get() + done, count - done});
-        if (!made) return {};
+        const auto made = unpackMember(decompressor.get(), zlib && done == 0, packed, to.subspan(done));
+        if (!made) return false;
         done += *made;
     }
-    job.throwIfStopped();
-    if (toEnd && !std::ranges::all_of(packed, [](unsigned char byte) { return byte == 0; })) return {};
+    return !toEnd || std::ranges::all_of(packed, [](unsigned char byte) { return byte == 0; });
+}
+
+std::unique_ptr<UnpackedBytes> unpackedAtOnce(const std::string& path, std::uint64_t start, bool zlib,
+                                              std::uint64_t bytes, bool toEnd, const JobControl& job) {
+    if (bytes > kMostAtOnce || availableMemoryBytes() / 2 < bytes) return {};
+    const auto count = static_cast<std::size_t>(bytes);
+    auto unpacked = std::make_unique_for_overwrite<char[]>(count);
+    if (!unpackAtOnce(path, start, zlib, toEnd, {unpacked.get(), count}, job)) return {};
     return std::make_unique<SoundBytes>(std::move(unpacked), count);
 }
 

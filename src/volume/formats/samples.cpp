@@ -116,6 +116,12 @@ public:
 /// Whether all values of a stream are wanted, so that it may be unpacked in one go.
 enum class Wanted { Some, All };
 
+/// Whether the bytes of a T are in the other order than this machine has them.
+template <class T>
+bool isInOtherOrder(const StoredValues& stored) {
+    return sizeof(T) > 1 && stored.bigEndian != (std::endian::native == std::endian::big);
+}
+
 /// The bytes of each T in reverse.
 template <class T>
 void swapBytes(char* bytes, std::size_t count) {
@@ -130,9 +136,7 @@ template <class T>
 class BinaryValues final : public Values {
 public:
     BinaryValues(const StoredValues& stored, Wanted wanted, const JobControl& job)
-        : m_path(stored.dataPath),
-          m_swap(sizeof(T) > 1 && stored.bigEndian != (std::endian::native == std::endian::big)),
-          m_unchecked(stored.unchecked) {
+        : m_path(stored.dataPath), m_swap(isInOtherOrder<T>(stored)), m_unchecked(stored.unchecked) {
         if (stored.open)
             m_bytes = stored.open(job);
         else if (stored.encoding == Encoding::Deflate && stored.index)
@@ -402,6 +406,24 @@ Collected collectPlain(Values& values, const Selection& selection, const JobCont
     return {std::move(kept), {0, -1}};
 }
 
+/// The same of all that a deflate stream has, unpacked in one go straight to the samples; empty where that cannot be.
+template <class T>
+std::optional<Collected> collectAtOnce(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+    const std::uint64_t bytes = layout.skip + voxelCount(selection.dims) * sizeof(T);
+    if (!layout.unchecked || layout.unchecked->bytes != bytes || bytes > kMostAtOnce || !layout.parts.empty() ||
+        layout.open || layout.encoding != Encoding::Deflate || isInOtherOrder<T>(layout))
+        return {};
+    const std::size_t voxels = voxelCount(selection.dims);
+    std::vector<T> kept(voxels + static_cast<std::size_t>((layout.skip + sizeof(T) - 1) / sizeof(T)));
+    auto* const first = reinterpret_cast<char*>(kept.data());
+    if (!unpackAtOnce(layout.dataPath, layout.start, layout.zlib, layout.unchecked->toEnd,
+                      {first, static_cast<std::size_t>(bytes)}, job))
+        return {};
+    if (layout.skip > 0) std::memmove(first, first + layout.skip, voxels * sizeof(T));
+    kept.resize(voxels);
+    return Collected{std::move(kept), {0, -1}};
+}
+
 /// Whether the voxels lie one behind the other.
 bool isGapless(const Selection& selection) {
     const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
@@ -592,8 +614,10 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
     }
     const bool byRows = !plan.isWhole() || !layout.pieces.empty();
     if constexpr (std::is_same_v<T, Kept>)
-        if (!byRows && !layout.scaling && isGapless(selection))
+        if (!byRows && !layout.scaling && isGapless(selection)) {
+            if (auto all = collectAtOnce<T>(layout, selection, job)) return std::move(*all);
             return collectPlain<T>(*openValues<T>(layout, Wanted::All, job), selection, job);
+        }
     const auto read = [&](const auto& convert) {
         return byRows
                    ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, job), plan, source.missing, job, convert)
