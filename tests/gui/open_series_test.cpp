@@ -22,6 +22,7 @@
 #include <QPushButton>
 #include <QSettings>
 #include <QSpinBox>
+#include <QStatusBar>
 #include <QTemporaryDir>
 #include <QTimer>
 #include <QUrl>
@@ -408,4 +409,10 @@ TEST_CASE("the dialog saves what the clip box leaves, coarser and in another typ
     CHECK(read.sampleType() == SampleType::F32);
     CHECK(summary.contains(QStringLiteral("%1 × %2 × %3").arg(read.dims().x).arg(read.dims().y).arg(read.dims().z)));
     CHECK(summary.contains("f32"));
+    // The message has the place of the hint to itself.
+    QStatusBar& bar = *w.window.statusBar();
+    REQUIRE(waitFor([&] { return bar.currentMessage().contains("half.nii"); }));
+    CHECK_FALSE(w.child<QLabel>("hintLabel").isVisible());
+    bar.clearMessage();
+    CHECK(w.child<QLabel>("hintLabel").isVisible());
 }

@@ -67,6 +67,9 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     watch(studies);
     connect(&services, &Services::message, this,
             [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
+    connect(&bar, &QStatusBar::messageChanged, this, [this](const QString& text) {
+        if (text.isEmpty()) followBackground();
+    });
     connect(&services.store(), &SessionStore::changed, this, &StatusLine::followScene);
     connect(&services.results(), &Results::changed, this, &StatusLine::followFigures);
     connect(&services, &Services::readOnlyChanged, this, &StatusLine::followFigures);
@@ -144,7 +147,9 @@ void StatusLine::followBackground() {
     m_background->setText(text);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})
         widget->setVisible(busy);
-    m_hint->setVisible(!busy && m_services.store().hasVolume());
+    // A message takes the place of the hint, and goes for work that is under way.
+    if (busy) m_bar.clearMessage();
+    m_hint->setVisible(!busy && m_services.store().hasVolume() && m_bar.currentMessage().isEmpty());
 }
 
 } // namespace pellucid::gui
