@@ -45,8 +45,11 @@ void write(const Volume& volume, const std::string& path, const JobControl& job)
         });
     std::filesystem::path data = file;
     data.replace_extension(".raw");
-    writeAtomically(data.string(), [&](OutputFile& out) { writePieces(out, sampleBytes(volume), job); });
-    writeTextAtomically(path, headerText(volume, data.filename().string()));
+    // The header is on the disk before data take the place of those that an earlier one goes with.
+    writeAtomically(path, [&](OutputFile& header) {
+        header.write(headerText(volume, data.filename().string()));
+        writeAtomically(data.string(), [&](OutputFile& out) { writePieces(out, sampleBytes(volume), job); });
+    });
 }
 
 } // namespace
