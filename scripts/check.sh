@@ -4,6 +4,7 @@
 #   mpi       pellucid-mpi builds, and its ranks measure what one process measures
 #   headless  the command line builds alone and needs neither Qt nor OpenGL to start
 #   headers   damaged headers of volume files, 2 000 of each format, are read or refused in words
+#   foreign   damaged files of the formats that libraries read, 500 of each, are read or refused in words
 #   dev       everything builds with assertions and with warnings as errors
 #   asan      no fault of addresses or undefined behaviour in the tests of files, fields, sessions and commands, nor in what
 #             damaged headers make of the readers
@@ -16,7 +17,7 @@
 # failure, and both are named. Exit status 1 where a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all=(format mpi headless headers dev asan asan-mpi tsan fuzz zink tidy)
+all=(format mpi headless headers foreign dev asan asan-mpi tsan fuzz zink tidy)
 
 # Installs the packages of the commands that are missing: need COMMAND PACKAGE …
 need() {
@@ -57,6 +58,12 @@ check_headers() {
     need
     scripts/build.sh pellucid-cli
     python3 tests/tools/mutate_headers.py build/release/bin/pellucid-cli --count 2000 --jobs "$(nproc)"
+}
+
+check_foreign() {
+    scripts/setup.sh python3-pydicom python3-tifffile python3-h5py python3-netcdf4 python3-zarr
+    scripts/build.sh pellucid-cli pellucid-reader
+    /usr/bin/python3 tests/tools/mutate_foreign.py build/release/bin/pellucid-cli --count 500 --jobs "$(nproc)"
 }
 
 check_dev() {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes the parsers that are ours: scripts/fuzz.sh [SECONDS] [TARGET…], each for 60 seconds where nothing is said, two
-# at a time. `volumes` and `documents` stand for those of volume files and those of all other files, which are all.
+# at a time. `volumes`, `readers` and `documents` stand for those of volume files, those of what the programs parse that
+# read foreign formats, and those of all other files, which are all.
 # Sets up and builds with clang what it needs, into build/fuzz. Inputs that reach new code are kept there, in corpus/,
 # and the next run begins with them. PELLUCID_FUZZ_SEED: another sequence of inputs than that of seed 1.
 # Exit status 1 at the first input that fails; it is kept in build/fuzz/failures, and what to do with it is said.
@@ -12,21 +13,24 @@ if [[ ${1:-} =~ ^[1-9][0-9]*$ ]]; then
     seconds=$1
     shift
 fi
-volumes=(nrrd nhdr mha mhd nifti nifti_gz vti pvti pvd xml_tags raw inflate bzip2 reader_messages)
+volumes=(nrrd nhdr mha mhd nifti nifti_gz vti pvti pvd vtk pvm dat vvd mrml xml_tags raw inflate bzip2 reader_messages)
+readers=(zarr netcdf page_words dicom_stack)
 documents=(tf_json tfi camera_json session_json study_json answers reproduction_json words)
-[ $# -gt 0 ] || set -- volumes documents
+[ $# -gt 0 ] || set -- volumes readers documents
 targets=() programs=()
 for word in "$@"; do
     case $word in
         volumes) targets+=("${volumes[@]}") programs+=(fuzz_volumes) ;;
+        readers) targets+=("${readers[@]}") programs+=(fuzz_readers) ;;
         documents) targets+=("${documents[@]}") programs+=(fuzz_documents) ;;
         *)
-            [[ " ${volumes[*]} ${documents[*]} " == *" $word "* ]] || {
-                echo "fuzz: no target is called '$word'; there are ${volumes[*]} ${documents[*]}" >&2
+            [[ " ${volumes[*]} ${readers[*]} ${documents[*]} " == *" $word "* ]] || {
+                echo "fuzz: no target is called '$word'; there are ${volumes[*]} ${readers[*]} ${documents[*]}" >&2
                 exit 2
             }
             group=document
             [[ " ${volumes[*]} " != *" $word "* ]] || group=volume
+            [[ " ${readers[*]} " != *" $word "* ]] || group=reader
             targets+=("$word") programs+=("fuzz_$word" "fuzz_${group}_seeds")
             ;;
     esac
@@ -45,7 +49,7 @@ export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=quarantine_size_mb=64
 # What an input may take: 5 s, 512 MiB at once, 2 GiB in all, those of the sanitizers included.
 limits=(-timeout=5 -malloc_limit_mb=512 -rss_limit_mb=2048)
 rm -rf build/fuzz/seeds
-for group in volume document; do
+for group in volume reader document; do
     [[ " ${programs[*]} " != *" fuzz_$group"@(s|_seeds)" "* ]] || "build/fuzz/bin/fuzz_${group}_seeds" build/fuzz/seeds
 done
 mkdir -p build/fuzz/corpus build/fuzz/failures build/fuzz/logs

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <ranges>
 
 #include <gdcmItem.h>
 #include <gdcmReader.h>
@@ -60,8 +59,7 @@ std::string wordsOf(const DataSet& set, const Tag& tag) {
 /// The numbers of a decimal or integer string.
 std::vector<double> numbersOf(const DataSet& set, const Tag& tag) {
     std::vector<double> numbers;
-    for (const auto part : std::views::split(textOf(set, tag), '\\'))
-        numbers.push_back(numberIn(trimmed(std::string(part.begin(), part.end()))));
+    for (const std::string& part : splitAt('\\', textOf(set, tag))) numbers.push_back(numberIn(trimmed(part)));
     if (std::ranges::any_of(numbers, [](double v) { return !std::isfinite(v); })) numbers.clear();
     return numbers;
 }

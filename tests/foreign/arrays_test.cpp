@@ -575,4 +575,15 @@ TEST_CASE("what is wrong with a classic NetCDF file is told", "[arrays]") {
     REQUIRE(x != std::string::npos);
     large.replace(x + 4, 4, "\x7f\xff\xff\xff");
     CHECK_THROWS_WITH(loadVolume(at(folder.write("large.nc", large))), Contains("do not end within the file"));
+    // With sizes of 64 bits: 2^60 · 2 · 3 values, more than 64 bits count bytes of.
+    {
+        NetCdfWriter file(folder.path("wide.nc"), NC_64BIT_DATA);
+        gridIn(file, NC_SHORT).values("v", {2, 3, 4}, counted<double>(24));
+    }
+    std::ifstream wide(folder.path("wide.nc"), std::ios::binary);
+    large.assign(std::istreambuf_iterator<char>(wide), {});
+    const std::size_t wideX = large.find(std::string("x\0\0\0\0\0\0\0\0\0\0\4", 12));
+    REQUIRE(wideX != std::string::npos);
+    large.replace(wideX + 4, 8, std::string("\x10\0\0\0\0\0\0\0", 8));
+    CHECK_THROWS_WITH(loadVolume(at(folder.write("large.nc", large))), Contains("claims more than there is"));
 }

@@ -150,6 +150,13 @@ TEST_CASE("OME-XML says how pages follow each other and how far pixels are apart
     CHECK(volume.geometry().spacing == Vec3(0.5, 0.5, 1.5));
     CHECK(volume.value(0) == 200); // slices first, then channels
     CHECK(volume.value(6) == 300);
+    // Orders that are none are read as this one.
+    for (const char* order : {"XYZZZ", "XYZC", "CTXYZ", ""}) {
+        std::string other = description;
+        other.replace(other.find("XYZCT"), 5, order);
+        source.path = folder.write("b.ome.tif", tiffFile(pages(4, other)));
+        CHECK(loadVolume(source).value(6) == 300);
+    }
 }
 
 TEST_CASE("a folder of pictures is one volume, in the order in which people count", "[images]") {

@@ -470,6 +470,18 @@ TEST_CASE("what Zarr cannot be is said", "[zarr]") {
     CHECK_THAT(with(metadata), Contains("'shape' is missing"));
     write(path + "/.zarray", "{");
     CHECK_THAT(errorOf(at(path)), Contains("no JSON object"));
+    // Names of chunks that lead out of the folder.
+    CHECK_THAT(with(metadata2(nullptr, "/../")), Contains("not parted by"));
+    // 2^30 · 2^30 · 2^4 chunks in a shard are 2^64, which 64 bits count as none.
+    json shards = metadata3(json::array({{{"name", "sharding_indexed"},
+                                          {"configuration",
+                                           {{"chunk_shape", {1, 1, 1}},
+                                            {"codecs", json::array({kBytes})},
+                                            {"index_codecs", json::array({kBytes})}}}}}));
+    shards["chunk_grid"]["configuration"]["chunk_shape"] = {1 << 30, 1 << 30, 16};
+    write(folder.path("s.zarr/zarr.json"), shards.dump());
+    write(folder.path("s.zarr/c/0/0/0"), "xyz");
+    CHECK_THAT(errorOf(at(folder.path("s.zarr"))), Contains("too many chunks in a shard"));
     // A chunk that unpacks to gigabytes of zeros.
     writeArray(path, metadata2({{"id", "zlib"}}),
                [](const std::string&) { return zlibbed(std::string(1u << 24, '\0')); });

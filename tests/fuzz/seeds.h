@@ -14,7 +14,7 @@
 namespace pellucid::fuzz {
 
 /// Formats whose bytes are no words.
-inline const std::set<std::string> kBinary{"nifti", "nifti_gz", "inflate", "bzip2"};
+inline const std::set<std::string> kBinary{"nifti", "nifti_gz", "inflate", "bzip2", "dicom_stack"};
 /// Values that are at the end of what numbers hold, or none.
 inline const std::vector<std::string> kOddWords{
     "-1",  "0",  "2147483647", "2147483648", "9223372036854775807", "18446744073709551616", "1e-320", "1e999", "nan",

@@ -3,6 +3,7 @@
 
 #include "data_beside.h"
 #include "seeds.h"
+#include "volume/dds_packer.h"
 #include "volume/flipped_bits.h"
 #include "volume/process/reader_messages.h"
 #include "volume/volume_writer.h"
@@ -143,6 +144,101 @@ void addVtk(Seeds& seeds) {
     seeds.add("xml_tags", vti({}, arrays) + "<a b=\"&#x41;&lt;&#66;\" c='\"'/><![CDATA[ <x> ]]><?y ?>");
 }
 
+/// Numbers of 16 bits, the high byte first.
+std::string bigEndianShorts(int count) {
+    std::string bytes;
+    for (int i = 0; i < count; ++i) bytes += {static_cast<char>(i / 7 - 1), static_cast<char>(i * 37)};
+    return bytes;
+}
+
+void addLegacyVtk(Seeds& seeds) {
+    const auto vtk = [](const char* kind, const std::string& grid, const std::string& body) {
+        return "# vtk DataFile Version 3.0\na title\n" + std::string(kind) + "\nDATASET " + grid + body;
+    };
+    const std::string points = "STRUCTURED_POINTS\nDIMENSIONS 2 3 4\nSPACING 1 2 3\nORIGIN 5 6 7\n";
+    const std::string numbers = "1 2 3 4 5 6 7 8 9 10 11 12\n13 14 15 16 17 18 19 20 21 22 23 24\n";
+    const std::string table = "LOOKUP_TABLE default\n";
+    seeds.add("vtk", vtk("ASCII", points, "POINT_DATA 24\nSCALARS density float 1\n" + table + numbers));
+    seeds.add("vtk", vtk("ASCII", points,
+                         "CELL_DATA 6\nSCALARS c int\n" + table + "1 2 3 4 5 6\nPOINT_DATA 24\nVECTORS v double\n" +
+                             numbers + numbers + numbers));
+    seeds.add("vtk", vtk("ASCII", points,
+                         "POINT_DATA 24\nFIELD FieldData 2\na 1 24 int\n" + numbers + "METADATA\nINFORMATION 0\n\n" +
+                             "b%20c 1 24 unsigned_char\n" + numbers));
+    seeds.add("vtk", vtk("BINARY", points, "POINT_DATA 24\nSCALARS density short\n" + table + bigEndianShorts(24)));
+    seeds.add("vtk", vtk("BINARY", points,
+                         "POINT_DATA 24\nCOLOR_SCALARS c 2\n" + bigEndianShorts(24) + "\nNORMALS n unsigned_short\n" +
+                             bigEndianShorts(72)));
+    seeds.add("vtk", vtk("BINARY", points,
+                         "POINT_DATA 24\nSCALARS a unsigned_char\nLOOKUP_TABLE t\n" + fuzz::kDataBeside +
+                             "\nLOOKUP_TABLE t 2\n\1\2\3\4\5\6\7\10"));
+    seeds.add("vtk", vtk("ASCII",
+                         "RECTILINEAR_GRID\nDIMENSIONS 2 3 4\nX_COORDINATES 2 float\n0 1\nY_COORDINATES 3 float\n"
+                         "0 2 4\nZ_COORDINATES 4 double\n0 3 6 9\n",
+                         "POINT_DATA 24\nSCALARS a int\n" + table + numbers));
+}
+
+void addPvm(Seeds& seeds) {
+    const std::string one = "PVM\n2 3 4\n1\n" + fuzz::kDataBeside;
+    const std::string two = "PVM2\n# a remark\n2 3 2\n1 1.5 2\n2\n" + fuzz::kDataBeside;
+    const std::string three = "PVM3\n2 2 2\n1 1 1.4\n3\n" + fuzz::kDataBeside + "a\nb\nc\nd\n";
+    for (const std::string& plain : {one, two, three}) {
+        seeds.add("pvm", plain);
+        seeds.add("pvm", dds(plain));
+        seeds.add("pvm", dds(plain, 2, 3));
+        seeds.add("pvm", dds(plain, 3, 2, true));
+    }
+}
+
+void addVoreenAndInviwo(Seeds& seeds) {
+    const std::string voreen = "ObjectFileName: d.raw\nTaggedFileName: ---\nResolution: 2 3 4\n";
+    seeds.add("dat", voreen + "SliceThickness: 1 1.5 2 # mm\nFormat: UCHAR\nObjectModel: I\nGridType: EQUIDISTANT\n");
+    seeds.add("dat", "# a remark\nObjectFileName: d.raw\nResolution: 2 2 2\nFormat: UCHAR\nObjectModel: RGB\n");
+    seeds.add("dat", "RawFile: d.raw\nResolution: 2 3 2\nFormat: UINT16\nBasisVector1: 2 0 0\nBasisVector2: 0 3 0\n"
+                     "BasisVector3: 0 0 4\nOffset: 1 2 3\nWorldVector1: 1 0 0 0\nWorldVector2: 0 1 0 0\n"
+                     "WorldVector3: 0 0 1 5\nWorldVector4: 0 0 0 1\nDataRange: 0 4095\nValueRange: -1 1\n"
+                     "ByteOrder: BigEndian\n");
+    seeds.add("dat", "RawFile: d.raw\nDimensions: 2 2 2\nFormat: Vec3UINT8\nSpacing: 1 1 2\nSequences: 1\n"
+                     "ByteOffset: 0\n");
+    seeds.add("dat", voreen + "Format: UCHAR\nTransformMatrix: row0 0 1 0 0\nTransformMatrix: row1 -1 0 0 0\n");
+    seeds.add("dat", "ObjectFileName: d.raw\nResolution: 2 3 2\nNumFrames: 2\nFormat: CHAR\n");
+    const auto vvd = [](const std::string& volumes) {
+        return "<?xml version=\"1.0\" ?>\n<VoreenData version=\"1\">\n<Volumes>\n" + volumes +
+               "</Volumes>\n</VoreenData>\n";
+    };
+    const auto volume = [](const std::string& raw, const std::string& items) {
+        return "<Volume>\n<RawData filename=\"" + raw + "\" x=\"2\" y=\"3\" z=\"2\" />\n<MetaData>\n" + items +
+               "</MetaData>\n</Volume>\n";
+    };
+    const std::string place = "<MetaItem name=\"Spacing\" type=\"Vec3MetaData\">\n<value x=\"1\" y=\"2\" z=\"3\" />\n"
+                              "</MetaItem>\n<MetaItem name=\"Offset\" type=\"Vec3MetaData\">\n"
+                              "<value x=\"-1\" y=\"0\" z=\"0.5\" />\n</MetaItem>\n";
+    const std::string matrix =
+        "<MetaItem name=\"Transformation\" type=\"Mat4MetaData\">\n<value>\n"
+        "<row0 x=\"0\" y=\"1\" z=\"0\" w=\"0\" />\n<row1 x=\"-1\" y=\"0\" z=\"0\" w=\"0\" />\n"
+        "<row2 x=\"0\" y=\"0\" z=\"1\" w=\"0\" />\n<row3 x=\"0\" y=\"0\" z=\"0\" w=\"1\" />\n</value>\n</MetaItem>\n";
+    const std::string mapping = "<MetaItem name=\"RealWorldMapping\" type=\"RealWorldMappingMetaData\">\n"
+                                "<value scale=\"65535\" offset=\"-1024\" unit=\"HU\" />\n</MetaItem>\n";
+    const std::string time = "<MetaItem name=\"Timestep\" type=\"FloatMetaData\" value=\"2.5\" />\n";
+    seeds.add("vvd", vvd(volume("d.raw\" format=\"uint16", place + mapping)));
+    seeds.add("vvd", vvd(volume("d.raw\" format=\"int8", matrix + time)));
+    seeds.add("vvd", vvd(volume("d.raw\" format=\"Vector2(uint8)", "") + volume("s0.raw\" format=\"uint8", place)));
+}
+
+void addScenes(Seeds& seeds) {
+    const std::string files = "<VolumeArchetypeStorage id=\"s1\" fileName=\"a.nrrd\"></VolumeArchetypeStorage>\n"
+                              "<VolumeArchetypeStorage id=\"s2\" fileName=\"%62.mha\"></VolumeArchetypeStorage>\n"
+                              "<VolumeArchetypeStorage id=\"s3\" fileName=\"c.vti\"></VolumeArchetypeStorage>\n";
+    const auto scene = [&](const std::string& volumes) {
+        return "<MRML version=\"Slicer 5.2.2\">\n" + volumes + files + "</MRML>\n";
+    };
+    seeds.add("mrml",
+              scene("<Volume id=\"v1\" name=\"CT &amp; chest\" references=\"display:d1;storage:s1;\"></Volume>\n"
+                    "<Volume id=\"v2\" name=\"MR\" storageNodeRef=\"s2\"></Volume>\n"));
+    seeds.add("mrml", scene("<Volume name=\"MR\" storageNodeRef=\"s2\"/><Volume name=\"MR\" storageNodeRef=\"s1\"/>"));
+    seeds.add("mrml", scene("<Volume name=\"itself\" storageNodeRef=\"s3\"/>"));
+}
+
 void addRaw(Seeds& seeds) {
     seeds.add("raw", "2,3,4,u8\n" + fuzz::kDataBeside);
     seeds.add("raw", "2,3,1,i16,big 12\n" + fuzz::kDataBeside);
@@ -190,6 +286,10 @@ int main(int argc, char** argv) {
         addMetaImage(seeds);
         addNifti(seeds);
         addVtk(seeds);
+        addLegacyVtk(seeds);
+        addPvm(seeds);
+        addVoreenAndInviwo(seeds);
+        addScenes(seeds);
         addRaw(seeds);
         addStreams(seeds);
         addMessages(seeds);

@@ -5,9 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_value.h"
 #include "session/session_json.h"
+#include "support/full_disk.h"
 #include "support/random_sessions.h"
 #include "support/temp_folder.h"
 
@@ -307,6 +309,24 @@ TEST_CASE("a data file whose name is no text is refused in words", "[session][js
     s.variables = std::vector<Variable>{v};
     CHECK_THROWS_AS(writeSession(s, folder.path("a.pellucid.json")), FileError);
     CHECK(folder.fileCount() == 0);
+}
+
+TEST_CASE("a session that cannot be saved leaves the one that was there", "[session][json]") {
+    const TempFolder folder;
+    const std::string path = folder.path("a.pellucid.json");
+    Session s;
+    writeSession(s, path);
+    const std::string before = readText(path);
+    s.frame = 7;
+    for (const std::size_t room : {std::size_t{0}, before.size() / 2}) {
+        const FullDisk disk(room);
+        CHECK_THROWS_AS(writeSession(s, path), FileError);
+    }
+    CHECK(readText(path) == before);
+    CHECK(folder.fileCount() == 1);
+    CHECK_THROWS_AS(writeSession(s, folder.path("none/a.pellucid.json")), FileError);
+    writeSession(s, path);
+    CHECK(readSession(path).session.frame == 7);
 }
 
 TEST_CASE("features that a hand has written without identities get them", "[session][json]") {

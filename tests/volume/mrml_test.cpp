@@ -79,6 +79,11 @@ TEST_CASE("what a scene cannot name is refused", "[mrml]") {
     CHECK_THAT(errorOf(scene("../x.nrrd")), Contains("outside") || Contains("folder"));
     CHECK_THAT(errorOf(scene("%2e%2e/x.nrrd")), Contains("outside") || Contains("folder"));
     CHECK_THAT(errorOf(scene("a.mrml")), Contains("names another scene"));
+    folder.write("itself.nrrd", scene("itself.nrrd")); // read as what it is, not as what it is called
+    CHECK_THAT(errorOf(scene("itself.nrrd")), Contains("names another scene"));
+    folder.write("round.nrrd",
+                 "<VTKFile type=\"Collection\"><Collection><DataSet file=\"a.mrml\"/></Collection></VTKFile>");
+    CHECK_THAT(errorOf(scene("round.nrrd")), Contains("names another collection"));
     CHECK_THAT(errorOf(scene("gone.nrrd")), Contains("no such file") && Contains("gone.nrrd"));
     CHECK_THAT(errorOf("<MRML><Volume name=\"a\"/></MRML>"), Contains("no volumes that have been saved"));
     CHECK_THAT(errorOf("<html></html>"), Contains("not a scene of 3D Slicer"));

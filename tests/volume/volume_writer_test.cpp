@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "base/atomic_file.h"
 #include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
@@ -164,6 +165,13 @@ TEST_CASE("a disk that fills up leaves nothing behind, whatever the format", "[w
             CHECK_THROWS_WITH(writeVolume(volume, folder.path("a" + suffix)), Contains("cannot write the file"));
             CHECK(folder.fileCount() == 0);
         }
+    // Data stay with their header: where the new one cannot be written, they are not replaced either.
+    std::filesystem::create_directory(folder.path("a.mhd"));
+    folder.write("a.raw", "older");
+    CHECK_THROWS_WITH(writeVolume(volume, folder.path("a.mhd")), Contains("a folder has this name"));
+    CHECK(readText(folder.path("a.raw")) == "older");
+    std::filesystem::remove(folder.path("a.mhd"));
+    std::filesystem::remove(folder.path("a.raw"));
     // A name as long as names can be, and one that is longer.
     const std::string longest(255 - 5, 'n');
     for (const std::string& suffix : {std::string(".nrrd"), std::string(".zarr")}) {

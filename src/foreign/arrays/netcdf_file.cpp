@@ -274,6 +274,8 @@ private:
         ArrayVariable record = variable;
         if (place.hasRecords) record.dims[0] = 1;
         place.recordBytes = valuesIn(record) * bytesPer(place.type);
+        if (place.recordBytes == 0 && std::ranges::find(record.dims, 0) == record.dims.end())
+            header.fail("the header of this NetCDF file claims more than there is"); // too many to count
         m_variables.push_back(variable);
         m_places[variable.name] = std::move(place);
     }

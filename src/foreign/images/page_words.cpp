@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <ranges>
 
 #include "base/text.h"
 #include "volume/formats/text_header.h"
@@ -28,11 +27,9 @@ double lengthIn(const std::string& text, double otherwise) {
 /// Lines "name=value".
 PageOrder orderOfImageJ(const std::string& description, double pixelsPerUnitX, double pixelsPerUnitY) {
     std::map<std::string, std::string> fields;
-    for (const auto line : std::views::split(description, '\n')) {
-        const std::string text(line.begin(), line.end());
+    for (const std::string& text : splitAt('\n', description))
         if (const std::size_t sign = text.find('='); sign != std::string::npos)
             fields[text.substr(0, sign)] = text.substr(sign + 1);
-    }
     PageOrder order;
     order.software = "ImageJ";
     order.axes = "czt";
@@ -71,7 +68,8 @@ PageOrder orderOfOme(const std::string& description) {
     if (begin == std::string::npos || end == std::string::npos) return order;
     const std::string tag = description.substr(begin, end - begin);
     const std::string dimensions = lowerCase(attribute(tag, "DimensionOrder")); // "xyzct"
-    if (dimensions.size() == 5 && dimensions.starts_with("xy")) order.axes = dimensions.substr(2);
+    order.axes = dimensions.starts_with("xy") ? dimensions.substr(2) : "";
+    if (!std::ranges::is_permutation(order.axes, std::string("zct"))) order.axes = "zct"; // the most frequent one
     order.slices = countIn(attribute(tag, "SizeZ"), 0);
     order.channels = countIn(attribute(tag, "SizeC"), 1);
     order.steps = countIn(attribute(tag, "SizeT"), 1);

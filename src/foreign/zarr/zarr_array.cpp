@@ -23,6 +23,7 @@ using nlohmann::json;
 constexpr std::size_t kMostMetadata = 64u << 20; ///< bytes
 constexpr std::size_t kMostAxes = 16;
 constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30; ///< bytes
+constexpr std::int64_t kMostInShard = std::int64_t{1} << 40; ///< chunks: the bytes of their table can be counted
 
 json jsonAt(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
@@ -58,6 +59,13 @@ float floatOfHalf(std::uint16_t half) {
     if (exponent == 31)
         return fraction == 0 ? sign * std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
     return exponent == 0 ? sign * std::ldexp(fraction, -14) : sign * std::ldexp(1.0f + fraction, exponent - 15);
+}
+
+/// What stands between the indices in the name of a chunk: another one could lead out of the folder.
+std::string separatorIn(const JsonValue& text) {
+    const std::string separator = text.text();
+    if (separator != "." && separator != "/") text.fail("indices in the names of chunks are not parted by '.' or '/'");
+    return separator;
 }
 
 /// The value of chunks that are not stored.
@@ -131,7 +139,7 @@ void ZarrArray::readVersion2(const JsonValue& metadata) {
     m_bigEndian = dtype.starts_with('>');
     readType(dtype.empty() ? dtype : dtype.substr(1), metadata["dtype"]);
     if (metadata.has("order") && metadata["order"].text() == "F") std::ranges::reverse(m_order);
-    if (metadata.has("dimension_separator")) m_separator = metadata["dimension_separator"].text();
+    if (metadata.has("dimension_separator")) m_separator = separatorIn(metadata["dimension_separator"]);
     if (metadata.has("filters") && metadata["filters"].json().is_array() && !metadata["filters"].items().empty())
         metadata["filters"].fail("filters of chunks are not supported", "write the array without them");
     if (metadata.has("compressor") && !metadata["compressor"].json().is_null())
@@ -150,7 +158,7 @@ void ZarrArray::readVersion3(const JsonValue& metadata) {
     m_prefix = isDefault ? "c" : "";
     m_separator = isDefault ? "/" : ".";
     if (keys.has("configuration") && keys["configuration"].has("separator"))
-        m_separator = keys["configuration"]["separator"].text();
+        m_separator = separatorIn(keys["configuration"]["separator"]);
     readCodecs(metadata["codecs"], false);
     if (metadata.has("dimension_names") && metadata["dimension_names"].json().is_array())
         for (const JsonValue& name : metadata["dimension_names"].items())
@@ -185,8 +193,12 @@ void ZarrArray::readShards(const JsonValue& settings) {
     m_shard = m_chunk;
     m_chunk = sizesIn(settings["chunk_shape"]);
     if (m_chunk.size() != m_shard.size()) settings.fail("chunks and shards have different numbers of axes");
-    for (std::size_t a = 0; a < m_chunk.size(); ++a)
+    std::int64_t left = kMostInShard;
+    for (std::size_t a = 0; a < m_chunk.size(); ++a) {
         if (m_shard[a] % m_chunk[a] != 0) settings.fail("the chunks do not fill their shard");
+        left /= m_shard[a] / m_chunk[a];
+    }
+    if (left == 0) settings.fail("there are too many chunks in a shard", "write the array in larger chunks");
     m_indexAtEnd = !settings.has("index_location") || settings["index_location"].text() == "end";
     for (const JsonValue& codec : settings["index_codecs"].items())
         if (const std::string name = codec["name"].text(); name != "bytes") {

@@ -1,13 +1,12 @@
 #include "volume/formats/block_codec.h"
 
 #include <algorithm>
+#include <new>
 #include <vector>
 
 #include <lz4.h>
 #include <lzma.h>
 #include <zlib.h>
-
-#include "base/check.h"
 
 namespace pellucid {
 
@@ -16,7 +15,9 @@ namespace {
 /// A zlib stream, which ends with a checksum.
 class ZlibCodec final : public BlockCodec {
 public:
-    ZlibCodec() { PELLUCID_CHECK(inflateInit(&m_stream) == Z_OK); }
+    ZlibCodec() {
+        if (inflateInit(&m_stream) != Z_OK) throw std::bad_alloc(); // it fails for nothing else
+    }
     ~ZlibCodec() override { inflateEnd(&m_stream); }
     ZlibCodec(const ZlibCodec&) = delete;
     ZlibCodec& operator=(const ZlibCodec&) = delete;
@@ -30,6 +31,7 @@ public:
         m_stream.next_out = out.next;
         m_stream.avail_out = static_cast<uInt>(output);
         const int status = inflate(&m_stream, Z_NO_FLUSH);
+        if (status == Z_MEM_ERROR) throw std::bad_alloc(); // its window is made when it is needed
         in = {m_stream.next_in, in.left - (input - m_stream.avail_in)};
         out = {m_stream.next_out, out.left - (output - m_stream.avail_out)};
         if (status == Z_STREAM_END) return State::Ended;
@@ -88,7 +90,9 @@ public:
 
     bool begin(const PackedBlock&) override {
         constexpr std::uint64_t kMostMemory = 256u << 20; // its highest level needs a quarter
-        return lzma_stream_decoder(&m_stream, kMostMemory, 0) == LZMA_OK;
+        const lzma_ret status = lzma_stream_decoder(&m_stream, kMostMemory, 0);
+        if (status == LZMA_MEM_ERROR) throw std::bad_alloc();
+        return status == LZMA_OK;
     }
     State decode(Input& in, Output& out) override {
         m_stream.next_in = in.next;
@@ -96,6 +100,7 @@ public:
         m_stream.next_out = out.next;
         m_stream.avail_out = out.left;
         const lzma_ret status = lzma_code(&m_stream, LZMA_RUN);
+        if (status == LZMA_MEM_ERROR) throw std::bad_alloc();
         in = {m_stream.next_in, m_stream.avail_in};
         out = {m_stream.next_out, m_stream.avail_out};
         if (status == LZMA_STREAM_END) return State::Ended;

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <new>
 #include <string_view>
-
-#include "base/check.h"
 
 namespace pellucid {
 
@@ -69,14 +68,14 @@ bool FileBytes::skip(std::uint64_t count) {
 InflatedBytes::InflatedBytes(const std::string& path, std::uint64_t start, bool zlib, const JobControl& job)
     : m_in(path, std::ios::binary), m_job(job), m_packed(kPiece), m_filePosition(start) {
     m_in.seekg(static_cast<std::streamoff>(start));
-    PELLUCID_CHECK(inflateInit2(&m_stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) == Z_OK);
+    if (inflateInit2(&m_stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) != Z_OK) throw std::bad_alloc();
 }
 
 InflatedBytes::InflatedBytes(const std::string& path, const Place& place, const JobControl& job)
     : m_in(path, std::ios::binary), m_job(job), m_packed(kPiece), m_memberEnded(place.memberEnded),
       m_decoded(place.decoded), m_sound(place.sound), m_filePosition(place.packed) {
     m_in.seekg(static_cast<std::streamoff>(place.packed));
-    PELLUCID_CHECK(inflateCopy(&m_stream, place.state.get()) == Z_OK);
+    if (inflateCopy(&m_stream, place.state.get()) != Z_OK) throw std::bad_alloc();
     m_stream.avail_in = 0;
 }
 
@@ -87,7 +86,7 @@ InflatedBytes::Place InflatedBytes::place() const {
     };
     Place place{m_decoded, m_sound, m_filePosition - m_stream.avail_in, m_memberEnded, {new z_stream{}, drop}};
     // zlib copies from a state that it does not call const, and leaves it alone.
-    PELLUCID_CHECK(inflateCopy(place.state.get(), const_cast<z_stream*>(&m_stream)) == Z_OK);
+    if (inflateCopy(place.state.get(), const_cast<z_stream*>(&m_stream)) != Z_OK) throw std::bad_alloc();
     return place;
 }
 
@@ -130,6 +129,7 @@ std::size_t InflatedBytes::read(char* to, std::size_t count) {
         m_stream.next_out = reinterpret_cast<Bytef*>(to + done);
         m_stream.avail_out = static_cast<uInt>(piece);
         const int status = inflate(&m_stream, Z_NO_FLUSH);
+        if (status == Z_MEM_ERROR) throw std::bad_alloc(); // its window is made when it is needed
         done += piece - m_stream.avail_out;
         m_decoded += piece - m_stream.avail_out;
         m_memberEnded = status == Z_STREAM_END;

@@ -1,15 +1,16 @@
 #include "volume/formats/bzip2_bytes.h"
 
 #include <algorithm>
+#include <new>
 
 #include <bzlib.h>
-
-#include "base/check.h"
 
 namespace pellucid {
 
 struct Bunzipped::Stream : bz_stream {
-    Stream() : bz_stream{} { PELLUCID_CHECK(BZ2_bzDecompressInit(this, 0, 0) == BZ_OK); }
+    Stream() : bz_stream{} {
+        if (BZ2_bzDecompressInit(this, 0, 0) != BZ_OK) throw std::bad_alloc();
+    }
     ~Stream() { BZ2_bzDecompressEnd(this); }
     Stream(const Stream&) = delete;
     Stream& operator=(const Stream&) = delete;
@@ -62,6 +63,7 @@ std::size_t Bunzipped::read(char* to, std::size_t count) {
         m_stream->next_out = to + done;
         m_stream->avail_out = static_cast<unsigned>(piece);
         const int status = BZ2_bzDecompress(m_stream.get());
+        if (status == BZ_MEM_ERROR) throw std::bad_alloc();
         done += piece - m_stream->avail_out;
         m_decoded += piece - m_stream->avail_out;
         m_streamEnded = status == BZ_STREAM_END;

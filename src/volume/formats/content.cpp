@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <new>
 #include <utility>
 
 #include <zlib.h>
@@ -61,7 +62,7 @@ bool isNifti(std::string_view head) {
 std::string unpackedHead(std::string_view head) {
     std::string packed(head), unpacked(kHeadBytes, '\0');
     z_stream stream{};
-    if (inflateInit2(&stream, MAX_WBITS + 16) != Z_OK) return {};
+    if (inflateInit2(&stream, MAX_WBITS + 16) != Z_OK) throw std::bad_alloc();
     stream.next_in = reinterpret_cast<Bytef*>(packed.data());
     stream.avail_in = static_cast<uInt>(packed.size());
     stream.next_out = reinterpret_cast<Bytef*>(unpacked.data());

@@ -52,9 +52,11 @@ void write(const FramesToWrite& frames, const std::string& path, const JobContro
         });
     std::filesystem::path data = file;
     data.replace_extension(".raw");
-    requireWritable(path); // before the data are
-    writeAtomically(data.string(), [&](OutputFile& out) { writeFrames(out, frames, job); });
-    writeTextAtomically(path, headerText(frames, data.filename().string()));
+    // The header is on the disk before data take the place of those that an earlier one goes with.
+    writeAtomically(path, [&](OutputFile& header) {
+        header.write(headerText(frames, data.filename().string()));
+        writeAtomically(data.string(), [&](OutputFile& out) { writeFrames(out, frames, job); });
+    });
 }
 
 std::vector<std::string> losses(const FramesToWrite& frames, const std::string&) {

@@ -80,7 +80,8 @@ VolumeSource chosenIn(const std::vector<SceneVolume>& volumes, const VolumeSourc
     if (chosen == volumes.end())
         throw UsageError("there is no volume " + inQuotes(source.array), source.path,
                          "it has " + joined(volumes, ", ", [](const SceneVolume& v) { return inQuotes(v.name); }));
-    if (lowerCase(chosen->path).ends_with(".mrml"))
+    // By its content, too: that tells the format, and a scene could name itself by another suffix.
+    if (lowerCase(chosen->path).ends_with(".mrml") || contentOf(chosen->path) == kMrmlContent)
         throw FileError("the scene names another scene as a volume", source.path, "save it again");
     VolumeSource file = source;
     file.path = chosen->path;

@@ -1,5 +1,6 @@
 // Writes NRRD0004: gzip-compressed in the volume's own type, or unpacked where several processes write together.
 #include <bit>
+#include <new>
 
 #include <zlib.h>
 
@@ -66,7 +67,8 @@ void deflateFrames(OutputFile& out, std::span<const std::byte> head, const Frame
     constexpr int kLevel = 3; // noise does not get smaller at higher levels, only slower
     constexpr std::size_t kPiece = 1u << 24;
     z_stream stream{};
-    PELLUCID_CHECK(deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzipFrame, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+    if (deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzipFrame, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+        throw std::bad_alloc();
     const struct End {
         z_stream& stream;
         ~End() { deflateEnd(&stream); }

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <initializer_list>
+#include <new>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -65,8 +66,9 @@ std::vector<std::byte> chunkOf(const Volume& volume, const Int3& first, const In
 std::vector<Bytef> packed(const std::vector<std::byte>& bytes) {
     uLongf size = compressBound(static_cast<uLong>(bytes.size()));
     std::vector<Bytef> packed(size);
-    PELLUCID_CHECK(compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                             static_cast<uLong>(bytes.size()), kPacking) == Z_OK);
+    if (compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
+                  kPacking) != Z_OK) // there is room for all that it can make of them
+        throw std::bad_alloc();
     packed.resize(size);
     return packed;
 }

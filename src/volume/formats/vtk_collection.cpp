@@ -56,6 +56,15 @@ std::vector<CollectionEntry> readCollection(const std::string& path, const JobCo
     return entries;
 }
 
+/// `source` for a file of a collection. Throws FileError for one that leads on to others, and maybe back.
+VolumeSource sourceOf(const CollectionEntry& entry, const VolumeSource& source) {
+    if (const std::string content = contentOf(entry.path); content == kPvdContent || content == kMrmlContent)
+        failInVtk(source.path, "the collection names another collection");
+    VolumeSource file = source;
+    file.path = entry.path;
+    return file;
+}
+
 std::vector<std::string> filesOfCollection(const std::string& path) {
     std::vector<std::string> files;
     for (const CollectionEntry& entry : readCollection(path, {})) {
@@ -74,10 +83,9 @@ FileContents describeCollection(const VolumeSource& source, const JobControl& jo
     const std::vector<CollectionEntry> entries = readCollection(source.path, job);
     FileContents contents;
     for (const CollectionEntry& entry : entries) { // the first that can be read: one may be missing
-        VolumeSource file = source;
-        file.path = entry.path;
-        file.frames.reset();
         try {
+            VolumeSource file = sourceOf(entry, source);
+            file.frames.reset();
             contents = contentsOf(file, job);
             break;
         } catch (const FileError&) {
@@ -98,8 +106,7 @@ FileContents describeCollection(const VolumeSource& source, const JobControl& jo
 Volume readFromCollection(const VolumeSource& source, const JobControl& job) {
     const std::vector<CollectionEntry> entries = readCollection(source.path, job);
     requireIndex("time step", source.step, entries.size(), source.path);
-    VolumeSource file = source;
-    file.path = entries[static_cast<std::size_t>(source.step)].path;
+    VolumeSource file = sourceOf(entries[static_cast<std::size_t>(source.step)], source);
     file.step = 0;
     file.range.reset();
     return loadVolume(file, job);

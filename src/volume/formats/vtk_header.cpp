@@ -262,7 +262,7 @@ VtkImage readVtkImage(const std::string& path, bool piecesInFiles, const JobCont
     const auto first =
         std::ranges::find_if(image.pieces, [](const VtkPiece& piece) { return !piece.arrays.all.empty(); });
     if (first != image.pieces.end()) image.arrays = first->arrays;
-    std::ranges::stable_partition(image.arrays.all, [](const VtkArray& array) { return !array.ofCells; });
+    std::ranges::stable_sort(image.arrays.all, {}, &VtkArray::ofCells);
     return image;
 }
 

@@ -18,7 +18,7 @@ struct Offered {
 
 Offered offeredBy(const LegacyVtk& file) {
     Offered offered{file.arrays, {}};
-    std::ranges::stable_partition(offered.arrays, [](const LegacyArray& array) { return !array.ofCells; });
+    std::ranges::stable_sort(offered.arrays, {}, &LegacyArray::ofCells);
     std::vector<std::string> ofPoints, ofCells;
     for (const LegacyArray& array : offered.arrays) (array.ofCells ? ofCells : ofPoints).push_back(array.name);
     offered.names = offeredNames(ofPoints, ofCells);
