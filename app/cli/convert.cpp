@@ -1,8 +1,9 @@
-// `convert`: a volume in another file format.
+// `convert`: a volume or a transfer function in another file format.
 #include <filesystem>
 #include <optional>
 
 #include "commands.h"
+#include "convert_tf.h"
 #include "output_files.h"
 #include "parse.h"
 #include "resolve.h"
@@ -16,6 +17,7 @@ struct Options {
     SceneOptions scene;
     std::optional<SampleType> type;
     std::string out;
+    std::optional<std::string> to, volume; ///< of a transfer function
 };
 
 /// Of a file, or of all that is in a folder.
@@ -30,8 +32,11 @@ std::uintmax_t bytesAt(const std::string& path, std::error_code& ec) {
 
 Answer run(const Options& o, Progress& progress) {
     if (o.out.empty()) throw UsageError("the file name is empty", "--out", "name the file to write");
-    atOption("--out " + o.out, [&] { checkVolumeSuffix(o.out); });
+    if (!o.to) atOption("--out " + o.out, [&] { checkVolumeSuffix(o.out); });
     addOutputFile(o.out, "--out");
+    refuse({{o.volume && !o.to, "only a transfer function is converted for a volume", "--volume", "add --to NAME"},
+            {o.to && o.type, "a transfer function has no samples", "--type", "leave it out"}});
+    if (o.to) return convertTf({*o.to, o.volume}, o.scene, o.out, progress);
     const Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Volume& volume = *opened.scene.volume;
     std::vector<std::string> notices = opened.sessionNotices;
@@ -54,14 +59,22 @@ Answer run(const Options& o, Progress& progress) {
 } // namespace
 
 Command addConvert(CLI::App& program) {
-    CLI::App* app = program.add_subcommand("convert", "Writes a volume in another file format, or a part of it");
+    CLI::App* app = program.add_subcommand(
+        "convert", "Writes a volume in another file format, or a part of it; or a transfer function");
     const auto o = std::make_shared<Options>();
     o->scene.addForData(*app);
     addValue(
         *app, "--type", "TYPE",
         [o](const std::string& text, const std::string& option) { o->type = parseName<SampleType>(text, option); },
         "type of the samples: u8 i8 u16 i16 u32 i32 f32 f64; what is rounded or cut is said (default: their own)");
-    addValue(*app, "--out", "FILE", o->out, anyText, "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti .tif .zarr")
+    addValue(*app, "--to", "NAME", o->to, anyText,
+             "VOLUME is a transfer function (a file, auto, tents:N, ramp:N or preset:NAME), which is written for: " +
+                 tfFormatNames());
+    addValue(*app, "--volume", "FILE", o->volume, anyText,
+             "with --to: the volume that it is for, whose range and spacing go along; other options of the volume are "
+             "of this one");
+    addValue(*app, "--out", "FILE", o->out, anyText,
+             "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti .tif .zarr, or with --to any")
         ->required();
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
