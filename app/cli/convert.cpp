@@ -1,8 +1,9 @@
-// `convert`: a volume in another file format.
+// `convert`: a volume or a transfer function in another file format.
 #include <filesystem>
 #include <optional>
 
 #include "commands.h"
+#include "convert_tf.h"
 #include "output_files.h"
 #include "parse.h"
 #include "resolve.h"
@@ -17,6 +18,7 @@ struct Options {
     std::optional<SampleType> type;
     bool allFrames = false;
     std::string out;
+    std::optional<std::string> to, volume; ///< of a transfer function
 };
 
 /// Of a file, or of all that is in a folder.
@@ -31,8 +33,12 @@ std::uintmax_t bytesAt(const std::string& path, std::error_code& ec) {
 
 Answer run(const Options& o, Progress& progress) {
     if (o.out.empty()) throw UsageError("the file name is empty", "--out", "name the file to write");
-    atOption("--out " + o.out, [&] { checkVolumeSuffix(o.out); });
+    if (!o.to) atOption("--out " + o.out, [&] { checkVolumeSuffix(o.out); });
     addOutputFile(o.out, "--out");
+    refuse({{o.volume && !o.to, "only a transfer function is converted for a volume", "--volume", "add --to NAME"},
+            {o.to && o.type, "a transfer function has no samples", "--type", "leave it out"},
+            {o.to && o.allFrames, "one transfer function is converted", "--all-frames", "leave it out"}});
+    if (o.to) return convertTf({*o.to, o.volume}, o.scene, o.out, progress);
     const Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Volume& volume = *opened.scene.volume;
     std::vector<std::string> notices = opened.sessionNotices;
@@ -62,7 +68,8 @@ Answer run(const Options& o, Progress& progress) {
 } // namespace
 
 Command addConvert(CLI::App& program) {
-    CLI::App* app = program.add_subcommand("convert", "Writes a volume in another file format, or a part of it");
+    CLI::App* app = program.add_subcommand(
+        "convert", "Writes a volume in another file format, or a part of it; or a transfer function");
     const auto o = std::make_shared<Options>();
     o->scene.addForData(*app);
     addValue(
@@ -71,8 +78,14 @@ Command addConvert(CLI::App& program) {
         "type of the samples: u8 i8 u16 i16 u32 i32 f32 f64; what is rounded or cut is said (default: their own)");
     app->add_flag("--all-frames", o->allFrames,
                   "all frames, or those of --frames, in one file; as VTK image data a file each, and a .pvd");
+    addValue(*app, "--to", "NAME", o->to, anyText,
+             "VOLUME is a transfer function (a file, auto, tents:N, ramp:N or preset:NAME), which is written for: " +
+                 tfFormatNames());
+    addValue(*app, "--volume", "FILE", o->volume, anyText,
+             "with --to: the volume that it is for, whose range and spacing go along; other options of the volume are "
+             "of this one");
     addValue(*app, "--out", "FILE", o->out, anyText,
-             "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti .pvd .tif .zarr")
+             "the file to write: .nrrd .mha .mhd .nii .nii.gz .vti .pvd .tif .zarr, or with --to any")
         ->required();
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

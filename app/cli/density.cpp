@@ -11,6 +11,7 @@
 #include "results_json.h"
 #include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
+#include "tf_notices.h"
 
 namespace pellucid::cli {
 
@@ -92,7 +93,9 @@ Answer run(const Options& o, Progress& progress) {
         if (*o.coverage < low || *o.coverage > high)
             notices.push_back("pictures with these shares are from " + percentText(low) + " to " + percentText(high) +
                               " opaque; the nearest one was taken");
-        if (o.outTf) writeTfFile(withShownOpacities(scene.tf, chosen->opacity), input.volume->range(), *o.outTf);
+        if (o.outTf)
+            addTo(notices, writeTfFile(withShownOpacities(scene.tf, chosen->opacity), input.volume->range(), *o.outTf,
+                                       input.volume->geometry()));
     }
     seconds.total = total.seconds();
 

@@ -47,6 +47,7 @@ _pellucid_cli() {
             [[ $command == bench ]] || return
             choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton threads optimize-whole refine refine-500 refine-1000 refine-direct render preview"
             ;;
+        --to) choices="paraview slicer slicer-vp slicer-xml voreen paraview-xml inviwo niivue vtkjs csv imagevis3d mitk itksnap pellucid" ;;
         --slice) choices="x: y: z:" ;;
         --target) choices="equal diagonal inside-out only:" ;;
         --annotate) choices="all cube letters axes scale legend title measures" ;;

@@ -12,6 +12,7 @@
 #include "results_json.h"
 #include "tf/formats/tf_file.h"
 #include "tf/formats/tf_json.h"
+#include "tf_notices.h"
 
 namespace pellucid::cli {
 
@@ -103,7 +104,8 @@ Answer run(const Options& o, Progress& progress) {
     proposal.tf = sight.tf;
     if (holder) proposal.why.push_back(textOf(*holder));
     const double seconds = looking.seconds();
-    if (o.outTf) writeTfFile(proposal.tf, proposal.window, *o.outTf);
+    std::vector<std::string> notices = opened.notices();
+    if (o.outTf) addTo(notices, writeTfFile(proposal.tf, proposal.window, *o.outTf, volume.geometry()));
     Json json = jsonOf(proposal, sight.shares, seconds);
     json.update(jsonFromView(home.camera, volume.geometry()));
     if (holder)
@@ -112,7 +114,7 @@ Answer run(const Options& o, Progress& progress) {
                           {"density", faintRest(*holder, seen, proposal.tf).density},
                           {"clip", clipsWithout(*holder)},
                           {"lost", holder->lost}};
-    return {textOf(proposal, sight.shares, seconds), std::move(json), opened.notices()};
+    return {textOf(proposal, sight.shares, seconds), std::move(json), std::move(notices)};
 }
 
 } // namespace

@@ -17,6 +17,7 @@
 #include "resolve.h"
 #include "results_json.h"
 #include "tf/formats/tf_file.h"
+#include "tf_notices.h"
 
 namespace pellucid::cli {
 
@@ -142,12 +143,13 @@ Answer run(const Options& o, Progress& progress) {
     const MeasureInput seen = measureInput(scene);
     const RayBundle rays(*scene.volume, tf, seen.view, kCoverageRays, progress.phase("coverage"));
     remarks.dark = darkeningOf(rays, histogram, tf, result.tf, options, again);
-    if (o.outTf) writeTfFile(result.tf, scene.volume->range(), *o.outTf);
+    std::vector<std::string> notices = opened.notices();
+    if (o.outTf) addTo(notices, writeTfFile(result.tf, scene.volume->range(), *o.outTf, scene.volume->geometry()));
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
     addRemarks(json, remarks.outcome, remarks.dark);
     if (options.profile != Profile::Default) json["profile"] = name(options.profile);
     addMapping(json, scene);
-    return {textOf(options, tf, result, comparison, priority, remarks, seconds), std::move(json), opened.notices()};
+    return {textOf(options, tf, result, comparison, priority, remarks, seconds), std::move(json), std::move(notices)};
 }
 
 } // namespace

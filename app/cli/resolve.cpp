@@ -1,11 +1,13 @@
 #include "resolve.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "output_files.h"
 #include "render/memory_needs.h"
 #include "session/scene_data.h"
 #include "session/session_json.h"
+#include "tf/formats/tf_file.h"
 
 namespace pellucid::cli {
 
@@ -99,11 +101,27 @@ std::vector<std::string> Opened::notices() const {
     return all;
 }
 
+namespace {
+
+/// What is to be said of a transfer function of another program; it is read once more for that.
+std::vector<std::string> tfNotices(const std::optional<std::string>& spec, const Scene& scene) {
+    std::error_code failure;
+    if (!spec || !std::filesystem::is_regular_file(spec->substr(0, spec->rfind('#')), failure) || !isForeignTf(*spec))
+        return {};
+    const ReadTf read = readTfNamed(*spec);
+    // The published profile takes Voreen's files as the thesis did.
+    if (read.opensAsItIs && scene.session.measure->profile == Profile::Published) return {};
+    return openingNotices(read, scene.data->geometry());
+}
+
+} // namespace
+
 Opened resolve(const SceneOptions& options, Progress& progress, const Work& work) {
     Opened opened;
     const SceneInputs inputs = inputsOf(options, work, opened.sessionNotices);
     opened.scene = openScene(inputs, progress.phase("loading"));
     options.clip.check(opened.scene);
+    for (const std::string& notice : tfNotices(options.tf.spec, opened.scene)) opened.sessionNotices.push_back(notice);
     if (inputs.session.clipping->rest.isNone() && opened.scene.session.clipping->rest.density > 0 &&
         !options.clip.holder)
         opened.sessionNotices.emplace_back(

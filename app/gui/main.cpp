@@ -49,11 +49,12 @@ void describe(QCommandLineParser& parser) {
         "a volume, or the frames of a series: files, a folder, a pattern (\"f%02d.mhd\", \"f*.mhd\"); sessions and "
         "samples, a window each: *.pellucid.json, sample:NAME",
         "[FILE…]");
-    parser.addOption({"tf",
-                      "Transfer function: a *.tf.json or Voreen *.tfi file, auto (what the data propose, the default), "
-                      "tents:N[:PEAK], "
-                      "ramp:N or preset:NAME.",
-                      "SPEC"});
+    parser.addOption(
+        {"tf",
+         "Transfer function: a *.tf.json file or one of another program, auto (what the data propose, the default), "
+         "tents:N[:PEAK], "
+         "ramp:N or preset:NAME.",
+         "SPEC"});
     parser.addOption({"session", "Continue with a saved session, a *.pellucid.json file.", "FILE"});
     parser.addOption({"windows", "Each FILE in a window of its own, not as frames of one series."});
     parser.addOption({"study", "Show the study that was prepared into a folder, and nothing else.", "DIR"});
@@ -132,7 +133,7 @@ Options optionsOf(QCommandLineParser& parser) {
     QStringList volumes;
     for (const QString& argument : parser.positionalArguments()) {
         const QString file = argument.startsWith("file:") ? QUrl(argument).toLocalFile() : argument;
-        const bool isTf = hasTfSuffix(file.toStdString());
+        const bool isTf = isTfFile(file.toStdString());
         if (isTf && !o.tf.isEmpty())
             throw UsageError("more than one transfer function", file.toStdString(), "give one");
         if (isTf)

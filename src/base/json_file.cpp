@@ -9,7 +9,9 @@ namespace pellucid {
 
 using nlohmann::json;
 
-json readJson(const std::string& path) {
+json readJson(const std::string& path) { return parseJson(readText(path), path); }
+
+json parseJson(const std::string& text, const std::string& path) {
     constexpr int kDeepest = 64;
     const auto notTooDeep = [&](int depth, json::parse_event_t, const json&) {
         if (depth > kDeepest)
@@ -18,7 +20,7 @@ json readJson(const std::string& path) {
         return true;
     };
     try {
-        return json::parse(readText(path), notTooDeep);
+        return json::parse(text, notTooDeep);
     } catch (const json::parse_error& e) {
         throw FileError("this is not valid JSON (byte " + std::to_string(e.byte) + ")", path, "correct the file");
     } catch (const json::out_of_range&) {

@@ -306,11 +306,13 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (inputs.session.isEmpty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
     Session session = inputs.session;
     // The transfer function first: it is small, and an error in it should not wait for a large volume.
+    std::optional<ReadTf> read;
     std::optional<TransferFunction> tf;
     if (inputs.tf == kAutomaticTf)
         forgetStart(session);
     else if (inputs.tf)
-        tf = loadTf(*inputs.tf);
+        read = readTfNamed(*inputs.tf);
+    if (read) tf = read->tf;
     if (inputs.frame) session.frame = *inputs.frame;
     std::optional<ValueRange> window = inputs.range;
     if (!window && tf && tf->range) window = tf->range;
@@ -328,6 +330,14 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (inputs.frame && *inputs.frame != scene.session.frame)
         throw UsageError("there is no frame " + std::to_string(*inputs.frame), scene.series->listing().title,
                          "give 0 to " + std::to_string(scene.series->size() - 1));
+    if (read) { // how long a path its opacities are of here is known now
+        TransferFunction placed = forVolume(*read, scene.data->geometry());
+        if (!(placed == *tf)) {
+            tf = std::move(placed);
+            scene.session.setTf(*tf);
+            scene = resolve(scene.session, scene, inputs.then, job);
+        }
+    }
     if (tf && windowIsOpen) { // what kind of samples there are is known now
         placeAsPublished(scene.session, *scene.data, *tf);
         if (tf->range) {

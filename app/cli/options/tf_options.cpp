@@ -15,8 +15,10 @@ void TfOptions::addSource(CLI::App& app) {
                                  "give a file, auto, tents:N[:PEAK], ramp:N or preset:NAME");
             spec = text;
         },
-        "transfer function, *.tf.json or Voreen's *.tfi (default: the session's, else auto: what the data propose, see "
-        "propose); auto and the \"range\" of a file set the window unless --range says otherwise; points stay at their "
+        "transfer function: *.tf.json, or a file of ParaView, 3D Slicer, Voreen, Inviwo or others (see convert), "
+        "FILE#NAME "
+        "for one of several in it (default: the session's, else auto: what the data propose, see propose); auto and "
+        "the \"range\" of a file set the window unless --range says otherwise; points stay at their "
         "data values whatever the window",
         "Volume");
 }

@@ -142,7 +142,8 @@ void ComparisonController::pin() {
 
 void ComparisonController::compareWithTf(const QString& spec, const QString& name) {
     m_services.attempt(tr("Cannot compare with the transfer function"), [&] {
-        TransferFunction tf = withoutIdentities(loadTf(spec.toStdString()));
+        const ReadTf read = readTfNamed(spec.toStdString());
+        TransferFunction tf = withoutIdentities(forVolume(read, m_services.scene().data->geometry()));
         placeAsPublished(m_services.scene().session, *m_services.scene().data, tf);
         ComparedState b = present(name);
         b.tf = std::move(tf);

@@ -1,6 +1,7 @@
 #include "controllers/controllers.h"
 
 #include "controllers/menu_actions.h"
+#include "controllers/tf_exchange_controller.h"
 #include "services/services.h"
 
 namespace pellucid::gui {
@@ -30,6 +31,7 @@ Controllers::Controllers(Services& all) : services(all) {
     opening.addActions();
     overlays.addActions();
     saving.addActions();
+    addTfExchangeActions(services, opening);
     films.addActions();
     studies.addActions();
     addEditActions(services);

@@ -38,7 +38,7 @@ constexpr auto kRecentKey = "recentFiles", kFolder = "volumeFolder";
 
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
-bool isTf(const QString& path) { return hasTfSuffix(path.toStdString()); }
+bool isTf(const QString& path) { return pellucid::isTfFile(path.toStdString()); }
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
 
 VolumeSource sourceAt(const QString& path) {
@@ -66,8 +66,17 @@ VolumeSource recentSource(const QString& entry) {
     return sessionFromJson({document, "recent files"}, "").session.variable().source;
 }
 
+// What a file of another program has that is not drawn here, and what was made of its opacities.
+void noteForeign(Services& services, const ReadTf& read) {
+    const Scene& scene = services.scene();
+    // The published profile takes Voreen's files as the thesis did.
+    if (read.opensAsItIs && scene.session.measure->profile == Profile::Published) return;
+    for (const std::string& notice : openingNotices(read, scene.data->geometry()))
+        services.notices().add({QString::fromStdString(notice)});
+}
+
 /// Whether what names a transfer function names a file.
-bool isTfFile(const QString& specOrPath) {
+bool namesTfFile(const QString& specOrPath) {
     return specOrPath != kAutomaticTf && !tfFromSpec(specOrPath.toStdString()) &&
            !tfFromPresetSpec(specOrPath.toStdString());
 }
@@ -252,7 +261,7 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 void OpenController::show(const Request& request, Opened& opened) {
     m_edits.clear(); // they were of what was open
     m_data.cancel();
-    const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
+    const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && namesTfFile(request.tfPath);
     m_saving.setTfPath(tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString());
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
@@ -266,7 +275,11 @@ void OpenController::show(const Request& request, Opened& opened) {
     } else if (!source.isSample() && !request.unsaved) {
         addRecent(recentEntry(source));
     }
-    if (tfFromFile) noteWindow(*m_services.store().session().tf());
+    if (tfFromFile) {
+        noteWindow(*m_services.store().session().tf());
+        if (isForeignTf(request.tfPath.toStdString()))
+            noteForeign(m_services, readTfNamed(request.tfPath.toStdString()));
+    }
     Q_EMIT this->opened();
     if (request.then) request.then();
     if (opened.tfError) {
@@ -311,20 +324,22 @@ void OpenController::openTf(const QString& specOrPath) {
     if (!m_services.isEditable()) return;
     if (specOrPath == kAutomaticTf) return automaticStartWanted();
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
-        const TransferFunction tf = loadTf(specOrPath.toStdString());
-        const bool isFile = isTfFile(specOrPath);
+        const ReadTf read = readTfNamed(specOrPath.toStdString());
+        const TransferFunction tf = forVolume(read, store.scene().data->geometry());
+        const bool isFile = namesTfFile(specOrPath);
         const auto change = [tf, data = store.scene().data](Session& session) {
             TransferFunction placed = tf;
             placeAsPublished(session, *data, placed);
             if (placed.range) editVariable(session, [&](Variable& v) { v.window = placed.range; }); // made for it
             session.setTf(std::move(placed));
         };
-        editData(tr("Open transfer function"), change, [this, tf, isFile, specOrPath] {
+        editData(tr("Open transfer function"), change, [this, tf, read, isFile, specOrPath] {
             if (isFile) {
                 m_saving.setTfPath(isForeignTf(specOrPath.toStdString()) ? QString() : specOrPath);
                 m_services.store().setTfSaved();
             }
             noteWindow(tf);
+            noteForeign(m_services, read);
         });
     });
 }
@@ -568,7 +583,7 @@ void OpenController::chooseRaw() {
 void OpenController::chooseTf() {
     const QString path =
         QFileDialog::getOpenFileName(m_services.window(), tr("Open transfer function"), keptFolder("tfFolder"),
-                                     tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
+                                     tr("Transfer functions (%1 *.json *.xml *.csv);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     keepFolderOf("tfFolder", path);
     openTf(path);

@@ -40,10 +40,10 @@ inline QString askSavePath(QWidget* parent, const QString& title, const QString&
     return path;
 }
 
-/// Of the files that hold transfer functions: "*.tf.json *.tfi".
+/// Of the files that hold transfer functions and nothing else: "*.tf.json *.tfi …".
 inline QString tfPatterns() {
     QStringList patterns;
-    for (const char* suffix : tfSuffixes()) patterns << QString("*%1").arg(suffix);
+    for (const std::string& suffix : tfSuffixes()) patterns << "*" + QString::fromStdString(suffix);
     return patterns.join(' ');
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -17,5 +18,8 @@ inline constexpr const char* kParaViewSuffix = ".paraview.json";
 /// ParaView draws the same where its ScalarOpacityUnitDistance is d0, but for opacities up to 1e-4, which it takes for
 /// 0. Features are not part of it.
 nlohmann::json paraViewPreset(const TransferFunction& tf, const ValueRange& window, const std::string& name);
+/// A preset of these points, each at its own x.
+nlohmann::json presetOfPoints(const std::vector<ControlPoint>& points, const ValueRange& range,
+                              const std::string& name);
 
 } // namespace pellucid

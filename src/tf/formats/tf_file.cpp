@@ -1,56 +1,149 @@
 #include "tf/formats/tf_file.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
-#include <nlohmann/json.hpp>
-
 #include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/round_numbers.h"
 #include "base/text.h"
-#include "tf/formats/paraview_preset.h"
+#include "tf/formats/foreign_file.h"
 #include "tf/formats/tf_json.h"
-#include "tf/formats/voreen_tfi.h"
 #include "tf/presets.h"
 
 namespace pellucid {
 
 namespace {
 
-constexpr const char* kVoreenSuffix = ".tfi";
-constexpr std::array<const char*, 2> kSuffixes{".tf.json", kVoreenSuffix};
-
 bool endsWith(const std::string& path, const char* suffix) { return lowerCase(path).ends_with(suffix); }
+
+/// Whose suffix nothing else has; null where it is none of these.
+const TfFormat* formatOfSuffix(const std::string& path) {
+    for (const TfFormat& f : tfFormats())
+        if (f.ownSuffix && endsWith(path, f.suffix)) return &f;
+    return nullptr;
+}
+
+bool isOurs(const TfFormat& format) { return format.read == pellucidTfFormat().read; }
+
+bool exists(const std::string& path) {
+    std::error_code failure;
+    return std::filesystem::exists(path, failure);
+}
+
+/// A file and, behind a #, a name in it.
+struct PartOfFile {
+    std::string path, part;
+};
+PartOfFile partOf(const std::string& path) {
+    const std::size_t mark = path.rfind('#');
+    if (mark == std::string::npos || exists(path)) return {path, {}};
+    return {path.substr(0, mark), path.substr(mark + 1)};
+}
 
 } // namespace
 
-std::span<const char* const> tfSuffixes() { return kSuffixes; }
-
-bool hasTfSuffix(const std::string& path) {
-    return std::any_of(kSuffixes.begin(), kSuffixes.end(), [&](const char* suffix) { return endsWith(path, suffix); });
+const std::vector<std::string>& tfSuffixes() {
+    static const std::vector<std::string> kSuffixes = [] {
+        std::vector<std::string> all;
+        for (const TfFormat& f : tfFormats())
+            if (f.ownSuffix) all.emplace_back(f.suffix);
+        return all;
+    }();
+    return kSuffixes;
 }
 
-bool isForeignTf(const std::string& path) { return endsWith(path, kVoreenSuffix); }
+bool hasTfSuffix(const std::string& path) { return formatOfSuffix(path) != nullptr; }
 
-TransferFunction readTfFile(const std::string& path) { return isForeignTf(path) ? readVoreenTf(path) : readTf(path); }
-
-bool isWrittenForOthers(const std::string& path) { return endsWith(path, kParaViewSuffix); }
-
-void writeTfFile(const TransferFunction& tf, const ValueRange& window, const std::string& path) {
-    if (!isWrittenForOthers(path)) return writeTf(tf, path);
-    std::string name = std::filesystem::path(path).filename().string();
-    name.resize(name.size() - std::string(kParaViewSuffix).size());
-    writeTextAtomically(
-        path, paraViewPreset(tf, window, name).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-}
-
-TransferFunction loadTf(const std::string& specOrPath) {
-    if (auto tf = tfFromSpec(specOrPath)) return *tf;
-    if (auto tf = tfFromPresetSpec(specOrPath)) return *tf;
+bool isTfFile(const std::string& path) {
+    if (hasTfSuffix(path)) return true;
+    const auto mayBe = {".json", ".xml", ".csv"};
     std::error_code failure;
-    if (!std::filesystem::exists(specOrPath, failure))
+    if (std::ranges::none_of(mayBe, [&](const char* suffix) { return endsWith(path, suffix); }) ||
+        endsWith(path, ".pellucid.json") || !std::filesystem::is_regular_file(path, failure))
+        return false;
+    try {
+        const ForeignFile file(path, readText(path));
+        return std::ranges::any_of(tfFormats(), [&](const TfFormat& f) { return f.knows(file); });
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+bool isForeignTf(const std::string& path) {
+    const std::string file = partOf(path).path;
+    if (const TfFormat* format = formatOfSuffix(file)) return !isOurs(*format);
+    try {
+        return !isOurs(tfFormatOf(ForeignFile(file, readText(file))));
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+ReadTf openTfFile(const std::string& path) {
+    const PartOfFile of = partOf(path);
+    const ForeignFile file(of.path, readText(of.path), of.part);
+    return tfFormatOf(file).read(file);
+}
+
+TransferFunction readTfFile(const std::string& path) { return openTfFile(path).tf; }
+
+ReadTf readTfNamed(const std::string& specOrPath) {
+    ReadTf read;
+    if (auto tf = tfFromSpec(specOrPath)) {
+        read.tf = std::move(*tf);
+        return read;
+    }
+    if (auto tf = tfFromPresetSpec(specOrPath)) {
+        read.tf = std::move(*tf);
+        return read;
+    }
+    if (!exists(partOf(specOrPath).path))
         throw FileError("no such file", specOrPath, "check the name, or give auto, tents:N, ramp:N or preset:NAME");
-    return readTfFile(specOrPath);
+    return openTfFile(specOrPath);
+}
+
+TransferFunction loadTf(const std::string& specOrPath) { return readTfNamed(specOrPath).tf; }
+
+TransferFunction forVolume(const ReadTf& read, const Geometry& geometry) {
+    if (read.opensAsItIs) return read.tf;
+    return withOpacitiesPer(read.tf, geometry.d0() / read.length.inWorld(geometry));
+}
+
+std::vector<std::string> openingNotices(const ReadTf& read, const Geometry& geometry) {
+    std::vector<std::string> notices = read.notices;
+    const double length = read.length.inWorld(geometry), d0 = geometry.d0();
+    if (!read.hasOpacities || length == d0) return notices;
+    if (read.opensAsItIs)
+        notices.push_back("opacities are taken for paths of one voxel, " + plainText(d0) +
+                          ", as the thesis has it; the program that wrote them draws them for " + plainText(length));
+    else
+        notices.push_back("opacities are converted from paths of " + plainText(length) + " to those of one voxel, " +
+                          plainText(d0));
+    return notices;
+}
+
+std::string presetNameOf(const std::string& path) {
+    std::string name = std::filesystem::path(path).filename().string();
+    for (const TfFormat& f : tfFormats())
+        if (endsWith(name, f.suffix)) return name.substr(0, name.size() - std::string(f.suffix).size());
+    return name;
+}
+
+bool isWrittenForOthers(const std::string& path) {
+    const TfFormat* format = formatOfSuffix(path);
+    return format != nullptr && !isOurs(*format);
+}
+
+std::vector<std::string> writeTfFile(const TransferFunction& tf, const std::optional<ValueRange>& window,
+                                     const std::string& path, const std::optional<Geometry>& volume) {
+    if (!isWrittenForOthers(path)) {
+        writeTf(tf, path);
+        return {};
+    }
+    WrittenTf written = writtenTf(*formatOfSuffix(path), {tf, window, volume, presetNameOf(path)});
+    writeTextAtomically(path, written.text);
+    return std::move(written.losses);
 }
 
 } // namespace pellucid

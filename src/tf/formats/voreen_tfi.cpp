@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pugixml.hpp>
-
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/round_numbers.h"
 #include "base/text.h"
+#include "tf/formats/foreign_file.h"
+#include "tf/formats/tf_format.h"
+#include "tf/formats/xml_document.h"
 
 namespace pellucid {
 
@@ -16,82 +18,21 @@ namespace {
 constexpr std::size_t kMostKeys = 4096;
 constexpr int kChords = 16; ///< from key to key, where a gamma bends the lines
 
-using Element = pugi::xml_node;
+using Element = XmlElement;
 
-/// Elements of one document and where they stand in it.
-class Reader {
-public:
-    Reader(std::string_view text, const std::string& path) : m_text(text), m_path(path) {
-        const pugi::xml_parse_result parsed = m_document.load_buffer(text.data(), text.size());
-        if (!parsed) {
-            const std::string line = std::to_string(lineOf(static_cast<std::size_t>(parsed.offset)));
-            throw FileError("this is not valid XML (" + lowerCase(parsed.description()) + ")", path + ", line " + line,
-                            "give a transfer function of Voreen, *.tfi");
-        }
-    }
+/// The first that holds keys: its name has changed from version to version.
+Element transferFunctionIn(const XmlDocument& document, const std::string& path) {
+    for (const Element e : document.root().children())
+        if (e.child("Keys")) return e;
+    throw FileError("there is no transfer function with keys in it", path, "give a transfer function of Voreen, *.tfi");
+}
 
-    /// The first that holds keys: its name has changed from version to version.
-    Element transferFunction() const {
-        for (const Element e : m_document.document_element().children())
-            if (e.child("Keys")) return e;
-        throw FileError("there is no transfer function with keys in it", m_path,
-                        "give a transfer function of Voreen, *.tfi");
-    }
-
-    [[noreturn]] void fail(const std::string& what, const Element& element) const {
-        const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(element.offset_debug(), 0));
-        throw FileError(what, m_path + ", line " + std::to_string(lineOf(offset)) + ", " + inQuotes(element.name()),
-                        "correct the file");
-    }
-
-    double number(const Element& element, const char* attribute) const {
-        const pugi::xml_attribute a = element.attribute(attribute);
-        if (!a) fail(std::string("the attribute ") + attribute + " is missing", element);
-        double value = 0;
-        if (!parseNumber(trimmed(a.value()), value) || !std::isfinite(value))
-            fail(inQuotes(a.value()) + " is not a number", element);
-        return value;
-    }
-
-    double number(const Element& element, const char* attribute, double lo, double hi) const {
-        const double value = number(element, attribute);
-        if (!(value >= lo && value <= hi))
-            fail(inQuotes(element.attribute(attribute).value()) + " is not between " +
-                     std::to_string(static_cast<int>(lo)) + " and " + std::to_string(static_cast<int>(hi)),
-                 element);
-        return value;
-    }
-
-    bool flag(const Element& element) const {
-        const std::string text = lowerCase(trimmed(element.attribute("value").value()));
-        if (text == "true" || text == "1") return true;
-        if (text != "false" && text != "0") fail("true or false is expected", element);
-        return false;
-    }
-
-    Element child(const Element& parent, const char* name) const {
-        const Element element = parent.child(name);
-        if (!element) fail(std::string("the element ") + name + " is missing", parent);
-        return element;
-    }
-
-private:
-    std::size_t lineOf(std::size_t offset) const {
-        const std::string_view before = m_text.substr(0, std::min(offset, m_text.size()));
-        return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
-    }
-
-    std::string_view m_text;
-    const std::string& m_path;
-    pugi::xml_document m_document;
-};
-
-ControlPoint pointOf(const Reader& reader, double x, const Element& color) {
+ControlPoint pointOf(const XmlDocument& reader, double x, const Element& color) {
     const auto part = [&](const char* name) { return reader.number(color, name, 0, 255) / 255; };
     return {x, part("a"), {part("r"), part("g"), part("b")}, false, {}};
 }
 
-std::vector<ControlPoint> keysOf(const Reader& reader, const Element& keys) {
+std::vector<ControlPoint> keysOf(const XmlDocument& reader, const Element& keys) {
     std::vector<ControlPoint> points;
     std::size_t count = 0;
     for (const Element key : keys.children("key")) {
@@ -119,7 +60,7 @@ void holdEnds(std::vector<ControlPoint>& points) {
     }
 }
 
-void forceOpacity(const Reader& reader, const Element& tf, std::vector<ControlPoint>& points) {
+void forceOpacity(const XmlDocument& reader, const Element& tf, std::vector<ControlPoint>& points) {
     int mode = 1;
     if (const Element e = tf.child("alphaMode"))
         mode = static_cast<int>(reader.number(e, "value", 0, 2));
@@ -176,11 +117,7 @@ void applyGamma(std::vector<ControlPoint>& points, double gamma) {
     }
 }
 
-} // namespace
-
-TransferFunction tfFromVoreen(std::string_view text, const std::string& path) {
-    const Reader reader(text, path);
-    const Element element = reader.transferFunction();
+TransferFunction tfOf(const XmlDocument& reader, const Element& element) {
     TransferFunction tf;
     tf.points = keysOf(reader, element.child("Keys"));
     holdEnds(tf.points);
@@ -207,6 +144,84 @@ TransferFunction tfFromVoreen(std::string_view text, const std::string& path) {
     return tf;
 }
 
+// ---- as the other formats
+
+/// In files of ours: its opacities hold for Voreen's length. The thesis takes those of other files for opacities of one
+/// voxel, whatever Voreen makes of them.
+constexpr const char* kMark = "pellucid";
+constexpr OpacityLength kVoreenLength{OpacityLength::Kind::Texture, 1.0 / 200};
+
+bool knowsVoreen(const ForeignFile& file) {
+    return file.isXml() && std::string_view(file.xml().root().name()) == "VoreenData";
+}
+
+ReadTf readVoreen(const ForeignFile& file) {
+    const Element element = transferFunctionIn(file.xml(), file.path());
+    ReadTf read;
+    read.tf = tfOf(file.xml(), element);
+    read.length = kVoreenLength;
+    read.opensAsItIs = !element.child(kMark);
+    if (!read.tf.range) read.notices.push_back(noDomainNotice());
+    return read;
+}
+
+std::string colorText(const char* name, const ControlPoint& p) {
+    std::string text = std::string("<") + name;
+    const std::initializer_list<std::pair<const char*, double>> parts{
+        {"r", p.color.r}, {"g", p.color.g}, {"b", p.color.b}, {"a", p.opacity}};
+    for (const auto& [part, value] : parts)
+        text += std::string(" ") + part + "=\"" + std::to_string(eightBits(value)) + "\"";
+    return text + " />";
+}
+
+/// All points that share an x.
+std::string keyText(const ControlPoint& left, const ControlPoint& right) {
+    const bool isSplit = colorText("c", left) != colorText("c", right);
+    return "            <key type=\"TransFuncMappingKey\">\n                <intensity value=\"" + exactText(left.x) +
+           "\" />\n                <split value=\"" + (isSplit ? "true" : "false") + "\" />\n                " +
+           colorText("colorL", left) + "\n" + (isSplit ? "                " + colorText("colorR", right) + "\n" : "") +
+           "            </key>\n";
+}
+
+WrittenTf writeVoreen(const TfToWrite& tf) {
+    const std::vector<ControlPoint> points = tf.points(kVoreenLength);
+    WrittenTf written;
+    std::string keys;
+    for (std::size_t i = 0; i < points.size();) {
+        std::size_t last = i;
+        while (last + 1 < points.size() && points[last + 1].x == points[i].x) ++last;
+        keys += keyText(points[i], points[last]);
+        i = last + 1;
+    }
+    written.text = "<?xml version=\"1.0\" ?>\n<VoreenData version=\"1\">\n"
+                   "    <TransFuncIntensity type=\"TransFuncIntensity\">\n"
+                   "        <alphaMode value=\"1\" />\n        <texDimensions x=\"256\" y=\"1\" z=\"1\" />\n"
+                   "        <filter value=\"0\" />\n        <dataType value=\"5121\" />\n"
+                   "        <gammaValue value=\"1\" />\n        <domain x=\"" +
+                   exactText(tf.range().lo) + "\" y=\"" + exactText(tf.range().hi) +
+                   "\" />\n        <threshold x=\"0\" y=\"1\" />\n        <" + kMark +
+                   " opacity=\"converted\" />\n        <Keys>\n" + keys +
+                   "        </Keys>\n    </TransFuncIntensity>\n</VoreenData>\n";
+    addEightBitLosses(written.losses, points);
+    const Vec3 edges = Vec3(tf.geometry().dims) * tf.geometry().spacing;
+    if (tf.hasVolume() && !(edges.x == edges.y && edges.y == edges.z))
+        written.losses.emplace_back("in Voreen the length that an opacity holds for depends on the direction where the "
+                                    "volume is no cube: that of the mean edge is taken");
+    return written;
+}
+
+} // namespace
+
+TransferFunction tfFromVoreen(std::string_view text, const std::string& path) {
+    const XmlDocument document(text, path);
+    return tfOf(document, transferFunctionIn(document, path));
+}
+
 TransferFunction readVoreenTf(const std::string& path) { return tfFromVoreen(readText(path), path); }
+
+TfFormat voreenFormat() {
+    return {"voreen",     "Voreen",    ".tfi",      true, "features; opacities and colours have 256 steps",
+            &knowsVoreen, &readVoreen, &writeVoreen};
+}
 
 } // namespace pellucid

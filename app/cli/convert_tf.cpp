@@ -1,0 +1,76 @@
+#include "convert_tf.h"
+
+#include "base/atomic_file.h"
+#include "base/text.h"
+#include "parse.h"
+#include "tf/formats/tf_file.h"
+#include "tf_notices.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+/// A transfer function, and what it is written for.
+struct Source {
+    TransferFunction tf; ///< opacities of one reference length of `geometry`
+    std::optional<ValueRange> window;
+    std::optional<Geometry> geometry;
+    std::vector<std::string> notices;
+};
+
+/// Opacities as the program that wrote the file draws them, whatever they are opened as.
+TransferFunction asWritten(const ReadTf& read, const Geometry& geometry) {
+    return withOpacitiesPer(read.tf, geometry.d0() / read.length.inWorld(geometry));
+}
+
+Source sourceOf(const TfConversion& conversion, const SceneOptions& options, Progress& progress) {
+    const std::string spec = *options.volume.path;
+    const bool isAutomatic = spec == kAutomaticTf;
+    Source source;
+    std::optional<ReadTf> read;
+    if (!isAutomatic) {
+        read = readTfNamed(spec);
+        source.notices = read->notices;
+    }
+    if (!conversion.volume) {
+        if (isAutomatic) throw UsageError("what the data propose needs data", "TF auto", "add --volume FILE");
+        source.tf = asWritten(*read, unknownVolume());
+        return source;
+    }
+    SceneOptions ofVolume = options;
+    ofVolume.volume.path = conversion.volume;
+    if (isAutomatic) ofVolume.tf.spec = spec;
+    const Opened opened = resolve(ofVolume, progress, {.use = {}, .byEngine = false, .needsTf = isAutomatic});
+    source.geometry = opened.scene.volume->geometry();
+    source.window = opened.scene.volume->range();
+    source.tf = read ? asWritten(*read, *source.geometry) : opened.scene.tf;
+    addTo(source.notices, opened.notices());
+    return source;
+}
+
+} // namespace
+
+std::string tfFormatNames() { return joined(tfFormats(), " ", &TfFormat::name); }
+
+Answer convertTf(const TfConversion& conversion, const SceneOptions& options, const std::string& out,
+                 Progress& progress) {
+    if (!options.volume.path) throw UsageError("no transfer function is named", "TF", "give a file, such as a.tf.json");
+    const TfFormat& format =
+        atOption("--to " + conversion.format, [&]() -> const TfFormat& { return tfFormatNamed(conversion.format); });
+    const Source source = sourceOf(conversion, options, progress);
+    const TfToWrite writing(source.tf, source.window, source.geometry, presetNameOf(out));
+    const WrittenTf written = writtenTf(format, writing);
+    writeTextAtomically(out, written.text);
+    std::vector<std::string> losses = source.notices;
+    addTo(losses, written.losses);
+    Json json{{"command", "convert"},
+              {"file", out},
+              {"to", format.name},
+              {"points", source.tf.points.size()},
+              {"reference_length", writing.geometry().d0()},
+              {"losses", losses}};
+    if (writing.hasRange()) json["range"] = {writing.range().lo, writing.range().hi};
+    return {"wrote " + out + ": a transfer function for " + format.title + "\n", std::move(json), std::move(losses)};
+}
+
+} // namespace pellucid::cli

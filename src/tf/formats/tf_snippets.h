@@ -1,0 +1,21 @@
+// Transfer functions as Python for the consoles of other programs: what somebody copies there and runs.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "tf/formats/tf_format.h"
+
+namespace pellucid {
+
+/// All take opacities for paths of d0, and tell the program so where it can be told.
+struct TfSnippet {
+    const char* name;  ///< "paraview"
+    const char* title; ///< for people
+    std::string (*text)(const TfToWrite& tf);
+};
+
+/// For ParaView's and 3D Slicer's own consoles, for PyVista, and for napari.
+std::span<const TfSnippet> tfSnippets();
+
+} // namespace pellucid

@@ -1,0 +1,99 @@
+// convert TF --to NAME, and --tf with files of other programs.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "cli_runner.h"
+
+using nlohmann::json;
+using pellucid::test::operator+;
+using pellucid::test::Outcome;
+using pellucid::test::Words;
+using pellucid::test::Workshop;
+
+namespace {
+
+const Words kVolume{"sample:disks", "--sample-size", "16"};
+const Words kForVolume{"--volume", "sample:disks", "--sample-size", "16"};
+
+bool says(const json& list, const std::string& words) {
+    for (const json& one : list)
+        if (one.get<std::string>().find(words) != std::string::npos) return true;
+    return false;
+}
+
+} // namespace
+
+TEST_CASE("a transfer function is converted for another program", "[cli][convert]") {
+    const Workshop w;
+    const json told =
+        w.json(Words{"convert", "tents:3:0.4", "--to", "paraview", "--out", "a.paraview.json"} + kForVolume);
+    CHECK(told["command"] == "convert");
+    CHECK(told["to"] == "paraview");
+    const json info = w.json(Words{"info"} + kVolume);
+    CHECK(told["range"] == info["range"]);
+    CHECK(says(told["losses"], "3 features"));
+    CHECK_FALSE(says(told["losses"], "no volume"));
+    REQUIRE(w.has("a.paraview.json"));
+
+    // Opened with the volume it has the opacities that it had; only its features are made anew.
+    const Words measure{"measure"};
+    const json before = w.json(measure + kVolume + Words{"--tf", "tents:3:0.4"});
+    const json after = w.json(measure + kVolume + Words{"--tf", "a.paraview.json"});
+    REQUIRE(after["features"].size() == 3);
+    for (std::size_t f = 0; f < 3; ++f) {
+        CHECK(after["features"][f]["opacity"].get<double>() == Approx(0.4).margin(1e-6));
+        CHECK(after["features"][f]["vws"].get<double>() ==
+              Approx(before["features"][f]["vws"].get<double>()).margin(3e-3));
+    }
+    const Outcome said = w.run(measure + kVolume + Words{"--tf", "a.paraview.json"});
+    CHECK_THAT(said.err, Catch::Contains("opacities are converted from paths of"));
+
+    // And on from there: sqrt(3) voxels to one.
+    w.json(Words{"convert", "a.paraview.json", "--to", "pellucid", "--out", "b.tf.json"} + kForVolume);
+    CHECK(w.json(measure + kVolume + Words{"--tf", "b.tf.json"})["features"][1]["opacity"].get<double>() ==
+          Approx(0.4).margin(1e-6));
+}
+
+TEST_CASE("every format is written and opened again", "[cli][convert]") {
+    const Workshop w;
+    for (const char* name : {"pellucid", "paraview", "slicer", "slicer-vp", "slicer-xml", "voreen", "paraview-xml",
+                             "inviwo", "niivue", "vtkjs", "csv", "imagevis3d", "mitk", "itksnap"}) {
+        INFO(name);
+        const std::string file = std::string(name) + ".any";
+        const json told = w.json(Words{"convert", "tents:2:0.5", "--to", name, "--out", file} + kForVolume);
+        CHECK(told["losses"].empty() == (std::string(name) == "pellucid"));
+        const json opened = w.json(Words{"measure"} + kVolume + Words{"--tf", file});
+        CHECK(opened["features"].size() >= 1);
+    }
+}
+
+TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli][convert]") {
+    const Workshop w;
+    const json told = w.json({"convert", "tents:2", "--to", "voreen", "--out", "a.tfi"});
+    CHECK(says(told["losses"], "no data range is known"));
+    CHECK(says(told["losses"], "no volume is known"));
+    CHECK_FALSE(told.contains("range"));
+    const auto refused = [&](const Words& words, int status, const std::string& message) {
+        const Outcome outcome = w.run(words);
+        CHECK(outcome.status == status);
+        CHECK_THAT(outcome.err, Catch::Contains(message));
+    };
+    refused({"convert", "tents:2", "--to", "word", "--out", "b"}, 2, "paraview, slicer");
+    refused({"convert", "none.tfi", "--to", "slicer", "--out", "b"}, 1, "no such file");
+    refused({"convert", "auto", "--to", "slicer", "--out", "b"}, 2, "--volume");
+    refused(Words{"convert"} + kVolume + Words{"--volume", "a.nrrd", "--out", "b.nrrd"}, 2, "add --to");
+    refused({"convert", "tents:2", "--to", "slicer", "--type", "u8", "--out", "b"}, 2, "no samples");
+    refused({"convert", "a.tfi", "--to", "slicer", "--out", "a.tfi"}, 2, "a.tfi"); // over what it reads
+    CHECK_FALSE(w.has("b"));
+    w.write("c.json", R"([{"Name": "c", "IndexedColors": [1, 0, 0], "Annotations": [0, "bone"]}])");
+    refused({"convert", "c.json", "--to", "slicer", "--out", "b"}, 1, "categories");
+}
+
+TEST_CASE("answers are written for other programs, too", "[cli][convert]") {
+    const Workshop w;
+    const Outcome outcome = w.run(Words{"refine"} + kVolume + Words{"--tf", "ramp:4", "--out-tf", "a.vp"});
+    CHECK(outcome.status == 0);
+    CHECK_THAT(outcome.err, Catch::Contains("not stored"));
+    CHECK(w.json(Words{"measure"} + kVolume + Words{"--tf", "a.vp"})["features"].size() >= 1);
+}

@@ -1,0 +1,184 @@
+#!/usr/bin/python3
+"""How alike VTK's and Pellucid's pictures are under a transfer function that Pellucid has written for ParaView or 3D Slicer.
+
+    exchange_pictures.py PELLUCID_CLI DATA_FOLDER OUT_FOLDER
+
+Draws tooth, cranium and walnut by VTK's ray caster on the CPU, unlit and with one camera, and by `pellucid-cli render`, and
+prints the structural similarity (SSIM) of each pair. The outer layer of voxels is cleared in both: VTK's volume ends at
+the outer voxels' centres, Pellucid's half a voxel beyond. Needs python3-vtk9, python3-numpy and python3-skimage.
+"""
+import json
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import vtk
+from skimage.io import imread
+from skimage.metrics import structural_similarity
+from vtk.util import numpy_support
+
+SIZE = 384
+VOLUMES = [("tooth/tooth.mhd", "tents:3:0.3"), ("cranium_ct/cranium_ct.nrrd", "auto"), ("walnut/walnut.mhd", "auto")]
+
+
+def run(cli, *words):
+    done = subprocess.run([cli, *words], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(words)}: {done.stderr}")
+    return done.stdout
+
+
+def cleared_copy(cli, path, to):
+    """The volume as NRRD, its outer layer at the smallest value."""
+    info = json.loads(run(cli, "info", path, "--json"))
+    whole = to + ".whole.nrrd"
+    run(cli, "convert", path, "--out", whole)
+    reader = vtk.vtkNrrdReader()
+    reader.SetFileName(whole)
+    reader.Update()
+    image = reader.GetOutput()
+    nx, ny, nz = image.GetDimensions()
+    values = numpy_support.vtk_to_numpy(image.GetPointData().GetScalars()).reshape(nz, ny, nx).copy()
+    low = values.min()
+    for face in (values[0], values[-1], values[:, 0], values[:, -1], values[:, :, 0], values[:, :, -1]):
+        face[...] = low
+    spacing = info["spacing"]
+    kinds = {"uint8": "uchar", "uint16": "ushort", "int16": "short", "float32": "float", "int8": "signed char"}
+    head = ("NRRD0004\ntype: %s\ndimension: 3\nsizes: %d %d %d\nspacings: %r %r %r\nendian: little\nencoding: raw\n\n"
+            % (kinds[str(values.dtype)], nx, ny, nz, *spacing))
+    with open(to, "wb") as out:
+        out.write(head.encode())
+        out.write(values.tobytes())
+    copy = vtk.vtkImageData()
+    copy.SetDimensions(nx, ny, nz)
+    copy.SetSpacing(*spacing)
+    copy.GetPointData().SetScalars(numpy_support.numpy_to_vtk(values.ravel(), deep=True))
+    os.remove(whole)
+    return copy
+
+
+def from_paraview(path, image):
+    """Functions and unit distance as ParaView takes them from its preset: the latter is its own default."""
+    preset = json.load(open(path))[0]
+    colors, opacities = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    rgb, alpha = preset["RGBPoints"], preset["Points"]
+    for i in range(0, len(rgb), 4):
+        colors.AddRGBPoint(*rgb[i:i + 4])
+    for i in range(0, len(alpha), 4):
+        opacities.AddPoint(*alpha[i:i + 4])
+    edges = [(n - 1) * s for n, s in zip(image.GetDimensions(), image.GetSpacing())]
+    cells = math.prod(n - 1 for n in image.GetDimensions())
+    return colors, opacities, math.sqrt(sum(e * e for e in edges)) / cells ** (1 / 3)
+
+
+def from_slicer(path, _image):
+    component = json.load(open(path))["volumeProperties"][0]["components"][0]
+    colors, opacities = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    for p in component["rgbTransferFunction"]["points"]:
+        colors.AddRGBPoint(p["x"], *p["color"], p["midpoint"], p["sharpness"])
+    for p in component["scalarOpacity"]["points"]:
+        opacities.AddPoint(p["x"], p["y"], p["midpoint"], p["sharpness"])
+    return colors, opacities, component["scalarOpacityUnitDistance"]
+
+
+def from_slicer_vp(path, _image):
+    lines = open(path).read().splitlines()
+    numbers = [[float(w) for w in line.split()[1:]] for line in (lines[6], lines[8])]
+    colors, opacities = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    for i in range(0, len(numbers[0]), 2):
+        opacities.AddPoint(*numbers[0][i:i + 2])
+    for i in range(0, len(numbers[1]), 4):
+        colors.AddRGBPoint(*numbers[1][i:i + 4])
+    return colors, opacities, 1.0
+
+
+def vtk_picture(image, functions, camera):
+    colors, opacities, unit = functions
+    look = vtk.vtkVolumeProperty()
+    look.SetInterpolationTypeToLinear()
+    look.ShadeOff()
+    look.SetColor(colors)
+    look.SetScalarOpacity(opacities)
+    look.SetScalarOpacityUnitDistance(unit)
+    mapper = vtk.vtkFixedPointVolumeRayCastMapper()
+    mapper.SetInputData(image)
+    mapper.AutoAdjustSampleDistancesOff()
+    mapper.SetInteractiveSampleDistance(min(image.GetSpacing()) / 4)
+    mapper.SetSampleDistance(min(image.GetSpacing()) / 4)
+    mapper.SetImageSampleDistance(1)
+    volume = vtk.vtkVolume()
+    volume.SetMapper(mapper)
+    volume.SetProperty(look)
+    renderer = vtk.vtkRenderer()
+    renderer.SetBackground(0, 0, 0)
+    renderer.AddVolume(volume)
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetSize(SIZE, SIZE)
+    window.AddRenderer(renderer)
+    eye = renderer.GetActiveCamera()
+    eye.SetFocalPoint(*camera["center"])
+    eye.SetPosition(*camera["eye"])
+    eye.SetViewUp(*camera["up"])
+    eye.ParallelProjectionOn()
+    eye.SetParallelScale(camera["height"] / 2)
+    renderer.ResetCameraClippingRange()
+    window.Render()
+    grab = vtk.vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    grab.Update()
+    pixels = numpy_support.vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
+    return pixels.reshape(SIZE, SIZE, -1)[::-1, :, :3]
+
+
+def camera_for(image):
+    dims, spacing = np.array(image.GetDimensions()), np.array(image.GetSpacing())
+    edges = dims * spacing
+    center = (dims - 1) * spacing / 2
+    toward = np.array([0.5, -0.8, 0.33])
+    toward /= np.linalg.norm(toward)
+    radius = np.linalg.norm(edges) / 2
+    return {"projection": "orthographic", "eye": list(center + 3 * radius * toward), "center": list(center),
+            "up": [0, 0, 1], "height": 1.6 * radius}
+
+
+def main():
+    cli, data, out = sys.argv[1:4]
+    os.makedirs(out, exist_ok=True)
+    worst = 1.0
+    for path, tf in VOLUMES:
+        name = os.path.basename(path).split(".")[0]
+        at = lambda suffix: os.path.join(out, name + suffix)
+        volume = at(".nrrd")
+        image = cleared_copy(cli, os.path.join(data, path), volume)
+        camera = camera_for(image)
+        json.dump(camera, open(at(".camera.json"), "w"))
+        run(cli, "convert", tf, "--to", "pellucid", "--volume", volume, "--out", at(".tf.json"))
+        run(cli, "render", volume, "--tf", at(".tf.json"), "--camera", at(".camera.json"), "--size", f"{SIZE}x{SIZE}",
+            "--background", "0,0,0", "--quality", "high", "--holder", "1", "--out", at(".png"))
+        ours = imread(at(".png"))[:, :, :3]
+        for kind, suffix, read in [("paraview", ".paraview.json", from_paraview), ("slicer", ".vp.json", from_slicer),
+                                   ("slicer-vp", ".vp", from_slicer_vp)]:
+            run(cli, "convert", at(".tf.json"), "--to", kind, "--volume", volume, "--out", at(suffix))
+            theirs = vtk_picture(image, read(at(suffix), image), camera)
+            ssim = structural_similarity(ours, theirs, channel_axis=2, data_range=255)
+            worst = min(worst, ssim)
+            difference = np.abs(ours.astype(int) - theirs.astype(int))
+            print(f"{name:10} {kind:10} SSIM {ssim:.4f}  mean difference {difference.mean():.2f} of 255")
+            writer = vtk.vtkPNGWriter()
+            flat = vtk.vtkImageData()
+            flat.SetDimensions(SIZE, SIZE, 1)
+            flat.GetPointData().SetScalars(
+                numpy_support.numpy_to_vtk(np.ascontiguousarray(theirs[::-1]).reshape(-1, 3), deep=True))
+            writer.SetFileName(at("." + kind + ".png"))
+            writer.SetInputData(flat)
+            writer.Write()
+    print(f"least similarity: {worst:.4f}")
+    return 0 if worst >= 0.98 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
