@@ -268,7 +268,7 @@ PanelInfo clipPanel() {
             .title = QObject::tr("Clip"),
             .visible = false,
             .tabOf = "display",
-            .keys = QKeySequence("Ctrl+K"),
+            .keys = QKeySequence("Ctrl+Shift+K"),
             .tip = QObject::tr("The part of the box that is left, oblique planes"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
                 return makePanel(services, *controllers.clipHandles, parent);

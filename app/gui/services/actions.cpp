@@ -1,5 +1,7 @@
 #include "services/actions.h"
 
+#include <algorithm>
+
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
@@ -19,11 +21,8 @@ QString plain(QString text) {
     return text;
 }
 
-QString keysText(const QAction& action) {
-    QStringList all;
-    for (const QKeySequence& key : action.shortcuts()) all << key.toString(QKeySequence::NativeText);
-    return all.join(", ");
-}
+/// Where other keys of an action are kept.
+QString keptKeys(const QAction& action) { return "keys/" + action.objectName(); }
 
 void setTips(QAction& action, const QString& tool, const QString& status) {
     const QString keys = keysText(action);
@@ -40,14 +39,16 @@ QAction* Actions::add(const QString& menu, const QString& id, const QString& tex
                       const ActionMore& more) {
     auto* action = new QAction(text, this);
     action->setObjectName(id);
-    if (!keys.isEmpty()) action->setShortcuts(QKeySequence::listFromString(keys));
+    const QList<QKeySequence> byDefault = QKeySequence::listFromString(keys);
+    const QVariant kept = QSettings().value(keptKeys(*action));
+    action->setShortcuts(kept.isValid() ? QKeySequence::listFromString(kept.toString()) : byDefault);
     action->setCheckable(static_cast<bool>(more.checked));
     connect(action, &QAction::triggered, this, [this, trigger] {
         if (trigger) trigger();
         refresh(); // a check mark shows what is, not what was clicked
     });
-    m_entries.push_back({menu, enabled, more, action});
-    setTips(*action, tip.isEmpty() ? plain(text) : tip, tip);
+    m_entries.push_back({menu, enabled, more, action, byDefault, tip.isEmpty() ? plain(text) : tip, tip});
+    setTips(*action, m_entries.back().tool, tip);
     return action;
 }
 
@@ -65,6 +66,29 @@ QAction* ActionMenu::addCheck(const QString& id, const QString& text, const QStr
 
 void Actions::addGestures(std::vector<Gesture> gestures) {
     m_gestures.insert(m_gestures.end(), gestures.begin(), gestures.end());
+}
+
+std::vector<ActionRow> Actions::rows() const {
+    std::vector<ActionRow> rows;
+    for (const Entry& e : m_entries) rows.push_back({e.action, plain(e.menu).replace('/', " › ")});
+    return rows;
+}
+
+QList<QKeySequence> Actions::defaultKeys(const QAction& action) const {
+    const auto entry = std::ranges::find(m_entries, &action, &Entry::action);
+    return entry == m_entries.end() ? QList<QKeySequence>() : entry->keys;
+}
+
+void Actions::setKeys(QAction& action, const QList<QKeySequence>& keys) {
+    const auto entry = std::ranges::find(m_entries, &action, &Entry::action);
+    if (entry == m_entries.end()) return;
+    action.setShortcuts(keys);
+    if (keys == entry->keys)
+        QSettings().remove(keptKeys(action));
+    else
+        QSettings().setValue(keptKeys(action), QKeySequence::listToString(keys));
+    setTips(action, entry->tool, entry->status);
+    refresh();
 }
 
 void Actions::refresh() {

@@ -7,8 +7,12 @@
 #include <vector>
 
 #include <QAction>
+#include <QKeySequence>
+#include <QList>
 #include <QObject>
 #include <QString>
+
+#include "dialogs/action_row.h"
 
 class QMainWindow;
 class QMenu;
@@ -56,6 +60,13 @@ public:
     /// A menu of `build()` that somebody fills himself, such as that of recent files.
     QMenu* menu(const QString& path) const;
 
+    /// All entries, in the order of the menus.
+    std::vector<ActionRow> rows() const;
+    /// The keys that an action came with.
+    QList<QKeySequence> defaultKeys(const QAction& action) const;
+    /// Other keys for an action, kept on this machine; those that it came with are forgotten again.
+    void setKeys(QAction& action, const QList<QKeySequence>& keys);
+
     /// A table of keys and gestures as rich text: all, or those in whose row `text` occurs.
     QString keyTable(const QString& text = {}) const;
 
@@ -65,6 +76,8 @@ private:
         std::function<bool()> enabled;
         ActionMore more;
         QAction* action;
+        QList<QKeySequence> keys; ///< that it came with
+        QString tool, status;     ///< texts of its tips, without keys
     };
     std::vector<Entry> m_entries;
     std::vector<Gesture> m_gestures;

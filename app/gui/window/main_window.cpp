@@ -17,6 +17,8 @@
 
 #include "controllers/controllers.h"
 #include "dialogs/closing_buttons.h"
+#include "dialogs/command_palette.h"
+#include "dialogs/keys_dialog.h"
 #include "panels/panel.h"
 #include "panels/probe_panel.h"
 #include "session/caption.h"
@@ -206,6 +208,19 @@ void MainWindow::addHelpActions() {
                          {volume, tr("Esc"), tr("give up a drag")}});
     actions.add(tr("&Help"), "keysAction", tr("&Mouse and keys"), "F1", {},
                 [this] { showKeys(m_services->actions(), this); });
+    actions.add(tr("&Help"), "paletteAction", tr("&Do something…"), "Ctrl+K",
+                tr("Finds whatever can be done by a few letters of it, and does it"),
+                [this] { showCommandPalette(m_services->actions().rows(), this); });
+    actions.add(tr("&Help"), "shortcutsAction", tr("&Keyboard shortcuts…"), {}, tr("Which keys do what, to be changed"),
+                [this] {
+                    Actions& all = m_services->actions();
+                    KeysDialog(
+                        all.rows(),
+                        {[&all](const QAction& action) { return all.defaultKeys(action); },
+                         [&all](QAction& action, const QList<QKeySequence>& keys) { all.setKeys(action, keys); }},
+                        this)
+                        .exec();
+                });
     actions.add(tr("&Help"), "aboutAction", tr("&About Pellucid"), {}, {}, [this] {
         QMessageBox::about(this, tr("About Pellucid"),
                            tr("<b>Pellucid %1</b><br>The volume explorer that finds the transfer function for you.")
