@@ -21,6 +21,11 @@ QString plain(QString text) {
     return text;
 }
 
+/// None of an empty text, of which Qt would make one that no key is in.
+QList<QKeySequence> keysIn(const QString& text) {
+    return text.isEmpty() ? QList<QKeySequence>() : QKeySequence::listFromString(text);
+}
+
 /// Where other keys of an action are kept.
 QString keptKeys(const QAction& action) { return "keys/" + action.objectName(); }
 
@@ -39,9 +44,9 @@ QAction* Actions::add(const QString& menu, const QString& id, const QString& tex
                       const ActionMore& more) {
     auto* action = new QAction(text, this);
     action->setObjectName(id);
-    const QList<QKeySequence> byDefault = QKeySequence::listFromString(keys);
+    const QList<QKeySequence> byDefault = keysIn(keys);
     const QVariant kept = QSettings().value(keptKeys(*action));
-    action->setShortcuts(kept.isValid() ? QKeySequence::listFromString(kept.toString()) : byDefault);
+    action->setShortcuts(kept.isValid() ? keysIn(kept.toString()) : byDefault);
     action->setCheckable(static_cast<bool>(more.checked));
     connect(action, &QAction::triggered, this, [this, trigger] {
         if (trigger) trigger();
