@@ -13,11 +13,15 @@ import os
 import subprocess
 import sys
 
-import numpy as np
-import vtk
-from skimage.io import imread
-from skimage.metrics import structural_similarity
-from vtk.util import numpy_support
+try:
+    import numpy as np
+    import vtk
+    from skimage.io import imread
+    from skimage.metrics import structural_similarity
+    from vtk.util import numpy_support
+except ImportError as missing:
+    print(f"SKIPPED: {missing} (Debian: python3-vtk9 python3-numpy python3-skimage)")
+    sys.exit(0)
 
 SIZE = 384
 VOLUMES = [("tooth/tooth.mhd", "tents:3:0.3"), ("cranium_ct/cranium_ct.nrrd", "auto"), ("walnut/walnut.mhd", "auto")]
@@ -33,9 +37,9 @@ def run(cli, *words):
 def cleared_copy(cli, path, to):
     """The volume as NRRD, its outer layer at the smallest value."""
     info = json.loads(run(cli, "info", path, "--json"))
-    whole = to + ".whole.nrrd"
+    whole = to + ".whole.vti"
     run(cli, "convert", path, "--out", whole)
-    reader = vtk.vtkNrrdReader()
+    reader = vtk.vtkXMLImageDataReader()
     reader.SetFileName(whole)
     reader.Update()
     image = reader.GetOutput()
