@@ -31,6 +31,7 @@ Controllers::Controllers(Services& all) : services(all) {
     overlays.addActions();
     saving.addActions();
     films.addActions();
+    sharing.addActions();
     studies.addActions();
     addEditActions(services);
     orientation.addActions();
@@ -74,6 +75,7 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(starting, &StartController::busyChanged);
     watch(saving, &SaveController::busyChanged);
     watch(films, &FilmController::busyChanged);
+    watch(sharing, &ShareController::busyChanged);
     watch(fields, &FieldController::busyChanged);
     watch(pictureSaliency, &PictureSaliencyController::busyChanged);
     watch(rulers, &RulerController::busyChanged);
