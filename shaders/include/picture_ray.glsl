@@ -1,5 +1,8 @@
 // The ray of a pixel, in voxel coordinates, and its samples. t is the depth along the view in world units, 0 in the
 // plane through the middle of the box.
+const float kOpaque = 1.0 - 1.0 / 1024.0; // what lies behind would change a pixel by less than a quarter of a level
+const int kRun = 8;                       // samples between two looks at the blocks
+
 layout(location = 1) uniform vec4 u_pictureFromFragment; // picture coordinates [-1,1]^2, y up: xy scale, zw offset
 layout(location = 2) uniform mat3 u_rayOrigin;    // times (x, y, 1): the point at t = 0
 layout(location = 3) uniform mat3 u_rayDirection; // the same: voxels per unit of t

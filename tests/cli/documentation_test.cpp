@@ -16,16 +16,17 @@
 #include "film/film.h"
 #include "options/setting_options.h"
 #include "session/session.h"
+#include "share/share.h"
 
 using pellucid::test::Outcome;
 using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",         "samples", "presets", "generate", "convert",   "render",
-                                         "measure",      "fields",  "propose", "refine",   "density",   "optimize",
-                                         "probe",        "rulers",  "views",   "space",    "bench",     "sequence",
-                                         "saliency-map", "compare", "describe", "plot",    "film",     "reproduce", "study"};
+const std::vector<std::string> kCommands{
+    "info",         "samples", "presets",  "generate", "convert", "render",    "measure", "fields", "propose",
+    "refine",       "density", "optimize", "probe",    "rulers",  "views",     "space",   "bench",  "sequence",
+    "saliency-map", "compare", "describe", "plot",     "film",    "reproduce", "share",   "study"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
 
@@ -112,6 +113,7 @@ std::string manualOf(const std::string& group) {
     if (group == "ground") return manualOf<GroundView>();
     if (group == "overlay") return manualOf<OverlayView>();
     if (group == "film") return manualOf<FilmSettings>();
+    if (group == "share") return manualOf<ShareSettings>();
     if (group == "coordinates") return manualOf<CoordinateSettings>();
     if (group == "slice") return manualOf<SliceViews>();
     if (group == "refine") return manualOf<RefineSteps>();

@@ -9,6 +9,7 @@
 #include "film/film.h"
 #include "options/setting_options.h"
 #include "session/session.h"
+#include "share/share.h"
 
 using namespace pellucid;
 using nlohmann::json;
@@ -151,6 +152,7 @@ TEST_CASE("every setting goes through every door, and each refuses in the same w
     walk<SliceViews>();
     walk<CoordinateSettings>();
     walk<FilmSettings>();
+    walk<ShareSettings>();
     walk<PictureSaliencyView>();
     walk<ComparisonView>();
     walk<HsbMapping>();

@@ -33,22 +33,23 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/bench", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/session", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/film", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
+    {"src/share", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
     {"src/study", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
     {"src/report",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study"}},
     {"app/cli",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "ranks", "engines", "bench", "session",
-      "study", "report", "film", "cli"}},
+      "study", "report", "film", "share", "cli"}},
     {"app/mpi", {"base", "volume", "tf", "saliency", "render", "ranks", "cli"}},
     {"app/paraview", {"base", "volume", "tf", "saliency", "render", "optimize", "ranks", "session"}},
     {"app/gui",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study", "report",
-      "film", "gui"}},
+      "film", "share", "gui"}},
     {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
-const std::set<std::string> kOurFolders{"base",    "volume", "tf",        "saliency", "render", "image_io", "optimize",
-                                        "engines", "bench",  "session",   "study",    "report", "film",     "ranks",
-                                        "cli",     "gui",    "gpu_check", "foreign",  "reader"};
+const std::set<std::string> kOurFolders{"base",    "volume", "tf",      "saliency",  "render",  "image_io", "optimize",
+                                        "engines", "bench",  "session", "study",     "report",  "film",     "share",
+                                        "ranks",   "cli",    "gui",     "gpu_check", "foreign", "reader"};
 
 /// The folders of app/gui: each may include those before its row, and itself. What lies beside them, main.cpp, all.
 const std::vector<std::set<std::string>> kGuiRows{{"jobs"},   {"store"},    {"widgets"},     {"dialogs"},

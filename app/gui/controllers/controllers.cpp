@@ -33,6 +33,7 @@ Controllers::Controllers(Services& all) : services(all) {
     saving.addActions();
     addTfExchangeActions(services, opening);
     films.addActions();
+    sharing.addActions();
     studies.addActions();
     addEditActions(services);
     orientation.addActions();
@@ -76,6 +77,7 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(starting, &StartController::busyChanged);
     watch(saving, &SaveController::busyChanged);
     watch(films, &FilmController::busyChanged);
+    watch(sharing, &ShareController::busyChanged);
     watch(fields, &FieldController::busyChanged);
     watch(pictureSaliency, &PictureSaliencyController::busyChanged);
     watch(rulers, &RulerController::busyChanged);

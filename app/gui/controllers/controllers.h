@@ -19,6 +19,7 @@
 #include "controllers/refine_controller.h"
 #include "controllers/ruler_controller.h"
 #include "controllers/save_controller.h"
+#include "controllers/share_controller.h"
 #include "controllers/start_controller.h"
 #include "controllers/study_controller.h"
 #include "controllers/target_actions.h"
@@ -40,6 +41,7 @@ struct Controllers {
     RulerController rulers{services};
     SaveController saving{services, fields, pictureSaliency, rulers};
     FilmController films{services};
+    ShareController sharing{services};
     OpenController opening{services, saving};
     OrientationController orientation{services, opening};
     OverlayController overlays{services, opening};

@@ -98,7 +98,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     m_services->actions().build(*this);
     m_controllers->opening.updateRecentFiles();
     new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, m_controllers->films,
-                   m_controllers->studies, *m_view, *statusBar());
+                   m_controllers->sharing, m_controllers->studies, *m_view, *statusBar());
 
     connect(m_view, &VolumeView::pictureShown, this, [this] {
         const PictureInfo& picture = m_view->picture();

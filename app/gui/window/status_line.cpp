@@ -5,6 +5,7 @@
 #include "controllers/film_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
+#include "controllers/share_controller.h"
 #include "controllers/study_controller.h"
 #include "render/camera_motion.h"
 #include "services/services.h"
@@ -22,9 +23,9 @@ constexpr int kMessageTime = 8000; // milliseconds
 } // namespace
 
 StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
-                       StudyController& studies, VolumeView& view, QStatusBar& bar)
-    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_films(films), m_studies(studies),
-      m_view(view), m_bar(bar), m_volume(named(new QLabel(&bar), "volumeLabel")),
+                       ShareController& sharing, StudyController& studies, VolumeView& view, QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_films(films), m_sharing(sharing),
+      m_studies(studies), m_view(view), m_bar(bar), m_volume(named(new QLabel(&bar), "volumeLabel")),
       m_camera(named(new QLabel(&bar), "cameraLabel",
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
@@ -45,10 +46,11 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     bar.addWidget(m_cancel);
     for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
 
-    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &films, &studies] {
+    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &films, &sharing, &studies] {
         opening.cancel();
         saving.cancel();
         films.cancel();
+        sharing.cancel();
         studies.cancel();
     });
     const auto watch = [this](auto& controller) {
@@ -64,6 +66,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     watch(opening);
     watch(saving);
     watch(films);
+    watch(sharing);
     watch(studies);
     connect(&services, &Services::message, this,
             [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
@@ -137,11 +140,13 @@ void StatusLine::followFigures() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), filming = m_films.isBusy();
-    const bool busy = opening || saving || filming || m_studies.isBusy();
+    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), filming = m_films.isBusy(),
+               sharing = m_sharing.isBusy();
+    const bool busy = opening || saving || filming || sharing || m_studies.isBusy();
     const QString text = opening   ? m_opening.busyText()
                          : saving  ? m_saving.busyText()
                          : filming ? m_films.busyText()
+                         : sharing ? m_sharing.busyText()
                                    : m_studies.busyText();
     if (busy && (m_cancel->isHidden() || text != m_background->text())) m_progress->setRange(0, 0);
     m_background->setText(text);

@@ -15,13 +15,14 @@ class OpenController;
 class FilmController;
 class SaveController;
 class Services;
+class ShareController;
 class StudyController;
 
 class StatusLine : public QObject {
     Q_OBJECT
 public:
     StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
-               StudyController& studies, VolumeView& view, QStatusBar& bar);
+               ShareController& sharing, StudyController& studies, VolumeView& view, QStatusBar& bar);
 
 private:
     void followScene();
@@ -33,6 +34,7 @@ private:
     OpenController& m_opening;
     SaveController& m_saving;
     FilmController& m_films;
+    ShareController& m_sharing;
     StudyController& m_studies;
     VolumeView& m_view;
     QStatusBar& m_bar;

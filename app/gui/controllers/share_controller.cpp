@@ -1,0 +1,84 @@
+#include "controllers/share_controller.h"
+
+#include <QDesktopServices>
+#include <QDir>
+#include <QFileInfo>
+#include <QMessageBox>
+#include <QUrl>
+
+#include "dialogs/ask_file.h"
+#include "dialogs/share_dialog.h"
+#include "services/services.h"
+#include "share/share.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kAnySize = 16; // a page has the size of its window
+
+} // namespace
+
+ShareController::ShareController(Services& services)
+    : m_services(services),
+      m_job([](const std::shared_ptr<const ShareTask>& task,
+               const JobControl& job) { return std::make_shared<const SharedPage>(makeShare(*task, job)); },
+            [this](const std::shared_ptr<const ShareTask>& task, std::shared_ptr<const SharedPage>& page) {
+                tell(*task, *page);
+            },
+            WhenBusy::Queue) {
+    connect(&m_job, &JobBase::busyChanged, this, &ShareController::busyChanged);
+    connect(&m_job, &JobBase::progress, this, &ShareController::progress);
+    connect(&m_job, &JobBase::cancelled, this, &ShareController::cancelled);
+    services.showFailuresOf(m_job, tr("Cannot write the page"));
+}
+
+ShareController::~ShareController() = default;
+
+QString ShareController::busyText() const { return tr("Saving %1…").arg(m_name); }
+
+void ShareController::addActions() {
+    ActionMenu menu(m_services.actions(), tr("&File"), [this] { return m_services.store().hasVolume(); });
+    menu.add("shareAction", tr("Share as &web page…"), {},
+             tr("One HTML file with the volume, which can be turned in any browser, without a network"),
+             [this] { choose(); });
+}
+
+void ShareController::tell(const ShareTask& task, const SharedPage& page) {
+    const QString path = QString::fromStdString(task.path);
+    m_services.saySaved(path, tr("%L1 MB").arg(static_cast<double>(page.bytes) / 1e6, 0, 'f', 1));
+    QString text = tr("%1 is written.").arg(QFileInfo(path).fileName());
+    for (const std::string& left : page.leftOut) text += QStringLiteral("\n") + QString::fromStdString(left);
+    m_services.notices().add(
+        {text, {{tr("Open in browser"), [path] { QDesktopServices::openUrl(QUrl::fromLocalFile(path)); }}}});
+    Q_EMIT saved(path);
+}
+
+void ShareController::choose() {
+    const Scene scene = m_services.scene(); // the page is of what is seen now, however long the dialog is open
+    ShareTask task{scene, pictureInput(scene, kAnySize, kAnySize).settings};
+    if (!m_services.attempt(tr("Cannot write the page"), [&] { checkShare(task); })) return;
+    ShareOptions offered;
+    offered.settings.title = proposedTitle(scene);
+    offered.path = QDir(keptFolder("shareFolder", QDir::homePath()))
+                       .filePath(QString::fromStdString(offered.settings.title) + ".html");
+    ShareDialog dialog(
+        offered, [&scene](const ShareSettings& settings) { return estimateShare(scene, settings); },
+        m_services.window());
+    while (dialog.exec() == QDialog::Accepted) {
+        const ShareOptions chosen = dialog.options();
+        const QString file = QFileInfo(chosen.path).fileName();
+        if (QFileInfo::exists(chosen.path) &&
+            QMessageBox::question(m_services.window(), tr("Share as web page"),
+                                  tr("%1 exists. Replace it?").arg(file)) != QMessageBox::Yes)
+            continue;
+        keepFolderOf("shareFolder", chosen.path);
+        task.settings = chosen.settings;
+        task.path = chosen.path.toStdString();
+        m_name = file;
+        m_job.start(std::make_shared<const ShareTask>(task), chosen.path);
+        Q_EMIT busyChanged();
+        return;
+    }
+}
+
+} // namespace pellucid::gui
