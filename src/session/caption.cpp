@@ -142,7 +142,7 @@ CaptionFacts captionFacts(const Scene& scene, const Measures& measures, const Oc
     facts.cut = !scene.session.clipping->isNone();
     facts.mode = scene.session.display->mode;
     std::vector<Feature> named = scene.tf.features;
-    for (std::size_t f = 0; f < named.size(); ++f) {
+    for (std::size_t f = 0; f < measures.features.size(); ++f) {
         named[f].name = printable(named[f].name);
         using State = CaptionFeature::State;
         facts.features.push_back({named[f].name, measures.features.at(f).vws, measures.features.at(f).visibility,

@@ -37,7 +37,7 @@ struct CaptionFacts {
 /// nearest first.
 std::string directionWords(const Vec3& towardEye, WorldAxes axes);
 
-/// Of the figures of this scene; `occlusion` may be empty.
+/// `measures` of this scene, of its features or of none; `occlusion` may be empty.
 CaptionFacts captionFacts(const Scene& scene, const Measures& measures, const OcclusionMatrix& occlusion = {});
 
 /// A few sentences: the view, the shares of up to four features and of the others together, what hides what, what is

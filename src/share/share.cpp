@@ -11,6 +11,7 @@
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "render/ambient_occlusion.h"
+#include "session/caption.h"
 #include "session/workspace.h"
 #include "share/packed_voxels.h"
 #include "share/page_files.h"
@@ -185,9 +186,23 @@ struct PageParts {
     std::optional<Int3> openness;
 };
 
+/// Of the saved view, as far as it has been measured. A frame may be named after its file, and so is left out where it
+/// has no time.
+CaptionFacts factsOf(const PageParts& parts) {
+    Measures measures;
+    measures.features = parts.figures.features;
+    CaptionFacts facts = captionFacts(parts.scene, measures);
+    facts.title = parts.title;
+    facts.lit = parts.look.light.on;
+    if (!parts.scene.series || !parts.scene.series->listing().hasTimes) facts.frame.clear();
+    return facts;
+}
+
 std::string pageText(const PageParts& parts, const Voxels& voxels, int factor) {
     return filled(fileNamed(pageFiles(), "page.html"), [&](const std::string& name) -> std::string {
         if (name == "title") return htmlText(parts.title);
+        if (name == "alt") return htmlText(altText(factsOf(parts)));
+        if (name == "caption") return htmlText(caption(factsOf(parts)));
         if (name == "version") return PELLUCID_VERSION;
         if (name == "style") return fileNamed(pageFiles(), "page.css");
         if (name == "background") return backgroundText(parts.look);

@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include "base/atomic_file.h"
+#include "optimize/answer/visibility_words.h"
 #include "render/image_renderer.h"
 #include "session/workspace.h"
 #include "share/page_text.h"
@@ -91,6 +92,12 @@ TEST_CASE("a page says the scene that it shows", "[share]") {
         CHECK(feature["vws"].get<double>() == Approx(measures.features[f].vws));
         CHECK(feature["visibility"].get<double>() == Approx(measures.features[f].visibility));
     }
+    // The same in words, beside the picture and in its place.
+    const std::string words = page.between("id=\"caption\">", "</p>"), alt = page.between("id=\"still\" alt=\"", "\"");
+    for (const std::size_t f : {0u, 2u})
+        CHECK(words.find(htmlText(percentText(measures.features[f].vws))) != std::string::npos);
+    CHECK(words.find("Not drawn: " + scene.tf.features[1].name) != std::string::npos);
+    CHECK(alt.find(page.scene["title"].get<std::string>()) != std::string::npos);
     const DensityCurve curve = workspace.densityCurve(input, limitsOf(scene.tf, *scene.session.goals));
     REQUIRE(s["density"]["points"].size() == curve.points.size());
     CHECK(s["density"]["points"][0]["opacity"] == json(curve.points[0].opacity));
