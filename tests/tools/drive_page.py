@@ -295,10 +295,10 @@ def drive(run):
         if run.keep:
             browser.screenshot(run.path("still.png"))
 
-    page, _ = run.page("hostile.html", "--title", HOSTILE, "--density-slider", "off", "--voxels", 100000)
+    page, _ = run.page("hostile.html", "--title", HOSTILE, "--density-slider", "off", "--voxels", 10000)
     with run.open(page) as browser:
         browser.value("window.pellucid.ready")
-        shown = HOSTILE.replace("\u2028", browser.value("document.querySelector('h1').textContent").split("{{voxels}} ")[1][0])
+        shown = HOSTILE.replace("\u2028", " ")
         run.check("a hostile title is text", browser.value("document.querySelector('h1').textContent") == shown)
         run.check("and does nothing", browser.value("typeof window.stolen") == "undefined")
         run.check("a coarser volume is said to be one", "made coarser" in browser.value("document.getElementById('size').textContent"))
