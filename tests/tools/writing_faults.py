@@ -22,9 +22,10 @@ import tempfile
 import time
 
 SHELLS = ["sample:shells", "--sample-size", "40"]
-VIEWED = SHELLS + ["--tf", "tents:3", "--engine", "cpu"]
+TOLD = ["sample:shells", "--sample-size", "16", "--tf", "tents:3"]
+VIEWED = TOLD + ["--engine", "cpu"]
 AIMED = VIEWED + ["--target", "1,1,1", "--max-iterations", "1"]
-PICTURE = ["--size", "96x96"]
+PICTURE = ["--size", "64x64"]
 
 # What is run, with {} for the output; a name without a suffix is a folder.
 COMMANDS = [
@@ -34,19 +35,19 @@ COMMANDS = [
 ] + [
     (["generate", "shells", "--size", "24", "--out", "{}"], "a.nrrd"),
     *((["render", *VIEWED, *PICTURE, "--out", "{}"], "a" + suffix) for suffix in (".png", ".jpg", ".tif", ".exr")),
-    (["plot", *VIEWED, "--out", "{}"], "a.svg"),
+    (["plot", *TOLD, "--out", "{}"], "a.svg"),
     (["fields", *VIEWED, "--out", "{}"], "fields"),
-    (["film", *VIEWED, *PICTURE, "--seconds", "0.2", "--out", "{}"], "film"),
+    (["film", *TOLD, *PICTURE, "--seconds", "0.2", "--out", "{}"], "film"),
     (["optimize", *AIMED, "--out-tf", "{}"], "a.tf.json"),
     (["optimize", *AIMED, "--out-camera", "{}"], "a.camera.json"),
     (["optimize", *AIMED, "--curves", "{}"], "a.csv"),
     (["optimize", *AIMED, "--report-size", "64x64", "--report", "{}"], "report"),
-    (["propose", *SHELLS, "--out-tf", "{}"], "a.tf.json"),
+    (["propose", *TOLD[:3], "--out-tf", "{}"], "a.tf.json"),
     (["views", *VIEWED, "--feature", "f1", "--count", "16", "--map", "{}"], "a.csv"),
     (["space", *VIEWED, "--target", "1,1,1", "--samples", "3", "--save", "{}"], "a.nrrd"),
 ]
 if shutil.which("ffmpeg"):
-    COMMANDS.append((["film", *VIEWED, *PICTURE, "--seconds", "0.2", "--out", "{}"], "a.mp4"))
+    COMMANDS.append((["film", *TOLD, *PICTURE, "--seconds", "0.2", "--out", "{}"], "a.mp4"))
 
 OLD = b"what was there before\n"
 
