@@ -44,6 +44,9 @@ Command addRulers(CLI::App& program);
 Command addViews(CLI::App& program);
 Command addReproduce(CLI::App& program);
 Command addBench(CLI::App& program);
+Command addThumbnail(CLI::App& program);
+/// Of all commands that `program` has when it runs.
+Command addCompletions(CLI::App& program);
 Command addStudyPrepare(CLI::App& study);
 Command addStudyRun(CLI::App& study);
 Command addStudyAnalyze(CLI::App& study);

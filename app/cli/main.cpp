@@ -16,6 +16,8 @@ std::vector<Command> addCommands(CLI::App& program) {
         addRulers(program),   addViews(program),   addSaliencyMap(program), addCompare(program),  addReproduce(program),
         addBench(program),    addFilm(program),    addConvert(program),     addDescribe(program), addShare(program)};
     std::ranges::move(addStudy(program), std::back_inserter(commands));
+    commands.push_back(addThumbnail(program));
+    commands.push_back(addCompletions(program));
     return commands;
 }
 

@@ -7,6 +7,7 @@
 
 #include <QApplication>
 #include <QCommandLineParser>
+#include <QIcon>
 #include <QUrl>
 
 #include "controllers/controllers.h"
@@ -228,6 +229,8 @@ int main(int argc, char** argv) {
     int count = static_cast<int>(arguments.size());
     arguments.push_back(nullptr);
     QApplication application(count, arguments.data());
+    QGuiApplication::setDesktopFileName("pellucid"); // whose icon and name the window has
+    QApplication::setWindowIcon(QIcon::fromTheme("pellucid"));
     InputHabits habits;
     application.installEventFilter(&habits);
     Options options;

@@ -1,5 +1,6 @@
-// What encodes and decodes pictures: a library of its own, loaded when the first picture is read or written. The
-// libraries behind OpenImageIO, some 200, take a quarter of a second to load, which no other command should wait for.
+// What encodes and decodes pictures: a library of its own, loaded when the first picture is read, or one that is no PNG
+// file written. The libraries behind OpenImageIO, some 200, take a quarter of a second to load, which no other command
+// should wait for.
 #pragma once
 
 #include <cstddef>

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "image_io/image_codecs.h"
+#include "image_io/png_bytes.h"
 
 namespace pellucid {
 
@@ -40,6 +41,11 @@ const ImageCodecs& codecs() {
         void* const symbol = library == nullptr ? nullptr : ::dlsym(library, kImageCodecsSymbol);
         if (symbol == nullptr) {
             const char* const why = ::dlerror();
+            std::error_code ec;
+            if (!fs::exists(path, ec))
+                throw FileError("the part of the program that reads pictures, and writes others than PNG, is not "
+                                "installed",
+                                path, "install the package pellucid-images, or write a .png file");
             throw FileError(std::string("the part of the program that reads and writes pictures cannot be loaded (") +
                                 (why == nullptr ? "no reason given" : why) + ")",
                             path, "install the program again");
@@ -59,6 +65,7 @@ std::vector<unsigned char> encoded(const ImageToEncode& image, const std::string
 
 std::vector<unsigned char> encoded(const Image& image, const std::string& suffix, const std::string& path) {
     const int channels = suffix == ".jpg" || suffix == ".jpeg" ? 3 : 4;
+    if (suffix == ".png") return pngBytes(image);
     return encoded({image.width, image.height, channels, samplesOf(suffix), ValueKind::Colors, image.rgba.data(), 4},
                    suffix, path);
 }
@@ -77,7 +84,7 @@ void writeImage(const Image& image, const std::string& path) {
     writeBytesAtomically(path, encoded(image, suffixOf(path), path));
 }
 
-std::vector<unsigned char> pngOf(const Image& image) { return encoded(image, ".png", "a picture in memory"); }
+std::vector<unsigned char> pngOf(const Image& image) { return pngBytes(image); }
 
 void checkPlaneSuffix(const std::string& path) {
     const std::string suffix = suffixOf(path);
@@ -88,10 +95,9 @@ void checkPlaneSuffix(const std::string& path) {
 void writePlane(const Plane& plane, const std::string& path) {
     checkPlaneSuffix(path);
     const std::string suffix = suffixOf(path);
-    const ImageToEncode image{
-        plane.width,        plane.height,        1, suffix == ".exr" ? SampleKind::Floats : SampleKind::Shorts,
-        ValueKind::Numbers, plane.values.data(), 1};
-    writeBytesAtomically(path, encoded(image, suffix, path));
+    const ImageToEncode image{plane.width,        plane.height,        1, SampleKind::Floats,
+                              ValueKind::Numbers, plane.values.data(), 1};
+    writeBytesAtomically(path, suffix == ".png" ? pngBytes(plane) : encoded(image, suffix, path));
 }
 
 Image readImage(const std::string& path) {

@@ -9,10 +9,10 @@
 
 namespace pellucid {
 
-/// PNG (8 bit), TIFF (16 bit), JPEG (8 bit, no alpha) or EXR (half float) by suffix, through OpenImageIO and a
-/// temporary file that is renamed. Throws FileError.
+/// PNG (8 bit), TIFF (16 bit), JPEG (8 bit, no alpha) or EXR (half float) by suffix, PNG by png_bytes.h, the others
+/// through OpenImageIO; by a temporary file that is renamed. Throws FileError.
 void writeImage(const Image& image, const std::string& path);
-/// The bytes of a PNG file, 8 bit, with alpha. Throws FileError.
+/// The bytes of a PNG file, 8 bit, with alpha.
 std::vector<unsigned char> pngOf(const Image& image);
 /// A picture of any kind that OpenImageIO reads; alpha 1 where it has none. Throws FileError.
 Image readImage(const std::string& path);

@@ -17,6 +17,7 @@
 #include "options/setting_options.h"
 #include "session/session.h"
 #include "share/share.h"
+#include "volume/loader.h"
 
 using pellucid::test::Outcome;
 using pellucid::test::Workshop;
@@ -29,11 +30,19 @@ const std::vector<std::string> kCommands{
     "saliency-map", "compare", "describe", "plot",     "film",    "reproduce", "share",   "study"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
+/// What file managers and shells call.
+const std::vector<std::string> kDesktopCommands{"thumbnail", "completions"};
+
+std::vector<std::string> allCommands() {
+    std::vector<std::string> all = kCommands;
+    all.insert(all.end(), kDesktopCommands.begin(), kDesktopCommands.end());
+    return all;
+}
 
 /// The words of each command that does something.
 std::vector<std::vector<std::string>> workingCommands() {
     std::vector<std::vector<std::string>> all;
-    for (const std::string& command : kCommands)
+    for (const std::string& command : allCommands())
         if (command != "study") all.push_back({command});
     for (const std::string& command : kStudyCommands) all.push_back({"study", command});
     return all;
@@ -126,9 +135,7 @@ std::string manualOf(const std::string& group) {
 
 /// What bash offers after `line`, the completion script being loaded.
 std::set<std::string> completions(const std::string& line) {
-    const std::string script = "PATH=\"$(dirname '" PELLUCID_CLI "')\":$PATH; source '" PELLUCID_SOURCE_DIR
-                               "/app/cli/pellucid-cli.bash'; COMP_LINE='" +
-                               line +
+    const std::string script = "source <('" PELLUCID_CLI "' completions bash); COMP_LINE='" + line +
                                "'; COMP_POINT=${#COMP_LINE}; COMP_WORDS=(pellucid-cli); _pellucid_cli; "
                                "printf '%s\\n' \"${COMPREPLY[@]}\"";
     FILE* pipe = popen(("bash -c " +
@@ -161,7 +168,7 @@ TEST_CASE("help and version are answers", "[cli][documentation]") {
     const Outcome help = w.run({"--help"});
     CHECK(help.status == 0);
     CHECK(help.err.empty());
-    for (const std::string& command : kCommands) {
+    for (const std::string& command : allCommands()) {
         INFO(command);
         CHECK(help.out.find("  " + command + " ") != std::string::npos);
     }
@@ -212,9 +219,77 @@ TEST_CASE("the manual says of settings what their descriptions say", "[cli][docu
         CHECK(manual == fresh); // else scripts/refresh-docs.sh writes it
 }
 
+/// The part of a script that is of one command, from its beginning in that shell's tables to the next one's.
+std::string partOf(const std::string& script, const std::string& begin, const std::string& end) {
+    std::string part;
+    for (std::size_t at = 0; (at = script.find(begin, at)) != std::string::npos;) {
+        const std::size_t to = script.find(end, at);
+        part += script.substr(at, to - at) + "\n";
+        at = to;
+    }
+    return part;
+}
+
+TEST_CASE("each shell is told of every command and option", "[cli][documentation]") {
+    const Workshop w;
+    const std::string bash = w.run({"completions", "bash"}).out, zsh = w.run({"completions", "zsh"}).out,
+                      fish = w.run({"completions", "fish"}).out;
+    const std::string ofProgram = partOf(bash, "        '') words=", ";;");
+    for (const std::string& command : allCommands()) {
+        INFO(command);
+        CHECK(std::regex_search(ofProgram, std::regex("[ ']" + command + "[ ']")));
+        CHECK(zsh.find("\n            '" + command + ":") != std::string::npos);
+        CHECK(fish.find("'__pellucid_cli_at ' -a " + command + " -d '") != std::string::npos);
+    }
+    for (const auto& words : workingCommands()) {
+        const std::string command = pellucid::joined(words, " ");
+        INFO(command);
+        const std::string ofBash = partOf(bash, "        '" + command + "') words=", ";;"),
+                          ofZsh = partOf(zsh, "        '" + command + "') _arguments", ";;"),
+                          ofFish = partOf(fish, "'__pellucid_cli_at " + command + "'", "\n");
+        std::set<std::string> inBash = optionsIn(ofBash), inZsh, inFish;
+        static const std::regex kSpec("'\\*(--[a-z0-9-]+)\\[");
+        for (std::sregex_iterator i(ofZsh.begin(), ofZsh.end(), kSpec), end; i != end; ++i) inZsh.insert(i->str(1));
+        static const std::regex kLong(" -l ([a-z0-9-]+)");
+        for (std::sregex_iterator i(ofFish.begin(), ofFish.end(), kLong), end; i != end; ++i)
+            inFish.insert("--" + i->str(1));
+        // What is defined, not what descriptions mention: "  --name …" at the beginning of a line of the help.
+        const std::string help = w.run(withHelp(words)).out;
+        std::set<std::string> defined;
+        static const std::regex kDefined("\n  (-[a-z],)?((--[a-z0-9-]+,?)+)");
+        for (std::sregex_iterator i(help.begin(), help.end(), kDefined), end; i != end; ++i)
+            defined.merge(optionsIn(i->str(2)));
+        CHECK(defined.size() >= 2);
+        CHECK(inBash == defined);
+        CHECK(inZsh == defined);
+        CHECK(inFish == defined);
+    }
+    const Outcome other = w.run({"completions", "csh"});
+    CHECK(other.status == 2);
+    CHECK(other.err.find("bash fish zsh") != std::string::npos);
+    const Outcome written = w.run({"completions", "fish", "--out", "script"});
+    CHECK(written.status == 0);
+    CHECK(w.read("script") == fish);
+}
+
+TEST_CASE("desktops know the names of all volume files", "[cli][documentation]") {
+    const std::string types = sourceFile("packaging/desktop/pellucid.xml");
+    // Those that every desktop knows: shared-mime-info has them for DICOM, HDF5, NetCDF and TIFF.
+    const std::set<std::string> known{"*.dcm", "*.hdf", "*.cdf", "*.tif", "*.tiff"};
+    // Of many programs; what MATLAB 7.3 writes is known by its first bytes, and the header of an .img stands beside it.
+    const std::set<std::string> unclaimed{"*.mat", "*.img", "*.img.gz"};
+    REQUIRE(pellucid::volumeFilePatterns().size() > 20);
+    for (const std::string& pattern : pellucid::volumeFilePatterns()) {
+        INFO(pattern);
+        CHECK((known.count(pattern) + unclaimed.count(pattern) == 1 ||
+               types.find("<glob pattern=\"" + pattern + "\"") != std::string::npos));
+    }
+    CHECK(types.find("<glob pattern=\"*.pellucid.json\"") != std::string::npos);
+}
+
 TEST_CASE("bash completes commands, options, values and samples", "[cli][documentation]") {
     const auto commands = completions("pellucid-cli ");
-    for (const std::string& command : kCommands) CHECK(commands.count(command) == 1);
+    for (const std::string& command : allCommands()) CHECK(commands.count(command) == 1);
     CHECK(completions("pellucid-cli me") == std::set<std::string>{"measure"});
     CHECK(completions("pellucid-cli optimize sample:shells --req") == std::set<std::string>{"--require-converged"});
     CHECK(completions("pellucid-cli measure x.nrrd --engine ") ==

@@ -52,8 +52,11 @@ fs::path readerProgram(const std::string& name) {
     if (!chosenProgram().empty()) return chosenProgram();
     std::error_code ec;
     const fs::path folder = fs::read_symlink("/proc/self/exe", ec).parent_path();
-    const fs::path beside = folder / name;
-    return fs::exists(beside, ec) ? beside : folder / PELLUCID_LIBRARIES_FROM_PROGRAMS / name;
+    const fs::path installed = folder / PELLUCID_LIBRARIES_FROM_PROGRAMS / name;
+    // The last one is for programs of others, which may be anywhere.
+    for (const fs::path& program : {folder / name, installed, fs::path(PELLUCID_LIBRARIES_INSTALLED) / name})
+        if (fs::exists(program, ec)) return program;
+    return installed;
 }
 
 /// The number of an open file.
@@ -76,8 +79,11 @@ private:
 };
 
 [[noreturn]] void failToStart(const fs::path& program, const std::string& why) {
+    std::error_code ec;
+    const bool isApart = program.filename() == "pellucid-image-reader" && !fs::exists(program, ec);
     throw FileError("the program that reads this format cannot be started (" + why + ")", program.string(),
-                    "close other programs, or install Pellucid again");
+                    isApart ? "install the package pellucid-images"
+                            : "close other programs, or install Pellucid again");
 }
 
 /// Two ends of a pipe, closed in programs that are started meanwhile.
