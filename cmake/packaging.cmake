@@ -82,7 +82,7 @@ This package has the window.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libpellucid-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libglm-dev, libeigen3-dev (>= 3.4), nlohmann-json3-dev, libpugixml-dev, libtbb-dev, zlib1g-dev, libbz2-dev, liblzma-dev, liblz4-dev, libepoxy-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libglm-dev, libeigen3-dev (>= 3.4), nlohmann-json3-dev, libpugixml-dev, libtbb-dev, zlib1g-dev, libbz2-dev, liblzma-dev, liblz4-dev, libdeflate-dev, libepoxy-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "pellucid-cli ${same_version}, cmake")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "volume explorer, library and headers
 Loads volumes, proposes transfer functions, draws, measures visibility and

@@ -19,8 +19,10 @@ Answer run(const SceneOptions& options, Progress& progress) {
     measures.coverage = workspace.coverage(input, progress.phase("coverage"));
     const CaptionFacts facts =
         captionFacts(opened.scene, measures, workspace.occlusion(input, progress.phase("occlusion")));
-    Json json{{"command", "describe"}, {"engine", engine}, {"caption", caption(facts)}, {"alt", altText(facts)},
-              {"from", facts.from},    {"lit", facts.lit}, {"cut", facts.cut},          {"coverage", measures.coverage->coverage}};
+    Json json{{"command", "describe"},     {"engine", engine},
+              {"caption", caption(facts)}, {"alt", altText(facts)},
+              {"from", facts.from},        {"lit", facts.lit},
+              {"cut", facts.cut},          {"coverage", measures.coverage->coverage}};
     Json features = Json::array();
     for (const CaptionFeature& f : facts.features)
         features.push_back({{"name", f.name}, {"vws", f.vws}, {"visibility", f.visibility}});
