@@ -35,7 +35,7 @@ Answer run(const SceneOptions& options, Progress& progress) {
 
 Command addDescribe(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
-        "describe", "Says in words what the picture shows: a caption, and with --json a shorter text in place of it");
+        "describe", "Says in words what the picture shows: a caption, and with --json also a short alternative text");
     const auto o = std::make_shared<SceneOptions>();
     o->addForFigures(*app);
     return {app, [o](Progress& progress) { return run(*o, progress); }};

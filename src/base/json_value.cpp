@@ -121,7 +121,8 @@ void requireFormat(const JsonValue& document, const char* format, int version, c
 void addUnknownKeys(nlohmann::json& object, const std::string& extra) {
     if (extra.empty()) return;
     const nlohmann::json rest = nlohmann::json::parse(extra);
-    for (const auto& [key, value] : rest.items()) object[key] = value;
+    for (const auto& [key, value] : rest.items())
+        if (!object.contains(key)) object[key] = value;
 }
 
 } // namespace pellucid

@@ -22,7 +22,6 @@ ReportPicture encoded(const Image& image);
 /// Means over squares of pixels, as wide as `most` at most.
 Image reduced(const Image& image, int most);
 
-std::string base64(std::span<const unsigned char> bytes); ///< RFC 4648, with padding
 /// A file as an address; `type` as in "text/csv".
 std::string dataUri(const char* type, std::span<const unsigned char> bytes);
 std::string dataUri(const char* type, const std::string& text);

@@ -159,6 +159,8 @@ std::string caption(const CaptionFacts& facts) {
     using State = CaptionFeature::State;
     std::string text = viewSentence(facts) + ".";
     if (facts.mode != RenderMode::Composite) return text;
+    const auto isSeen = [](const CaptionFeature& f) { return f.visibility > 0; };
+    if (!facts.features.empty() && std::ranges::none_of(facts.features, isSeen)) return text + " Nothing is visible.";
     if (const std::string shares = sharesSentence(facts.features); !shares.empty()) {
         text += " " + capitalized(shares) + ".";
         if (facts.coverage)

@@ -334,8 +334,9 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
         TransferFunction placed = forVolume(*read, scene.data->geometry());
         if (!(placed == *tf)) {
             tf = std::move(placed);
-            scene.session.setTf(*tf);
-            scene = resolve(scene.session, scene, inputs.then, job);
+            Session changed = scene.session; // apart from the basis, which tells what is new
+            changed.setTf(*tf);
+            scene = resolve(std::move(changed), scene, inputs.then, job);
         }
     }
     if (tf && windowIsOpen) { // what kind of samples there are is known now

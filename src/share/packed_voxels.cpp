@@ -95,8 +95,10 @@ std::vector<unsigned char> deflated(std::span<const unsigned char> bytes, const 
 
 double packedBytesPerVoxel(const Volume& volume, const ShareCodes& codes) {
     constexpr int kLayers = 8;
+    constexpr std::size_t kMostVoxels = std::size_t{1} << 22; // an estimate is waited for
     const Int3& n = volume.dims();
-    const int count = std::min(kLayers, n.z);
+    const auto affordable = static_cast<int>(kMostVoxels / layerSize(n));
+    const int count = std::clamp(affordable, 1, std::min(kLayers, n.z));
     const bool hasInvalid = volume.invalidCount() > 0;
     const std::size_t layer = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
     std::vector<unsigned char> planes(layer * static_cast<std::size_t>(count) * planeCount(codes, hasInvalid));

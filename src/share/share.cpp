@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/base64.h"
 #include "base/check.h"
 #include "base/round_numbers.h"
 #include "engines/engines.h"
@@ -114,18 +115,6 @@ std::vector<unsigned char> stillOf(const ShareTask& task, const JobControl& job)
         png = pngOf(image);
     }
     return png;
-}
-
-std::string base64(std::span<const unsigned char> bytes) {
-    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t three = 0;
-        for (std::size_t n = 0; n < 3; ++n) three = three << 8 | (n < have ? bytes[i + n] : 0u);
-        for (std::size_t n = 0; n < 4; ++n) text += n <= have ? kDigits[three >> (18 - 6 * n) & 63u] : '=';
-    }
-    return text;
 }
 
 // ---------------------------------------------------------------------------------------------- the page's words
@@ -276,11 +265,14 @@ std::string proposedTitle(const Scene& scene) {
     return name.empty() ? usual : name;
 }
 
-ShareEstimate estimateShare(const Scene& scene, const ShareSettings& settings) {
+double pageBytesPerVoxel(const Scene& scene, ShareBits bits) {
+    const ShareCodes codes = shareCodes(*scene.volume, bitsOf(bits));
+    return packedBytesPerVoxel(*scene.volume, codes) * static_cast<double>(digitCount(1'300'000)) / 1.3e6;
+}
+
+ShareEstimate estimateShare(const Scene& scene, const ShareSettings& settings, double perVoxel) {
     const Int3& full = scene.volume->dims();
     const ShareCodes codes = shareCodes(*scene.volume, bitsOf(settings.bits));
-    const double perVoxel =
-        packedBytesPerVoxel(*scene.volume, codes) * static_cast<double>(digitCount(1'300'000)) / 1.3e6;
     const auto bytesAt = [&](int factor) {
         return kUsualPageBytes + perVoxel * static_cast<double>(voxelCount(dimsAt(full, factor)));
     };

@@ -65,8 +65,10 @@ struct ShareEstimate {
     int bits = 8;
     double bytes = 0;
 };
-/// Compresses a few layers. `settings.megabytes` is heeded.
-ShareEstimate estimateShare(const Scene& scene, const ShareSettings& settings);
+/// About how many bytes of a page a voxel takes. Compresses a few layers.
+double pageBytesPerVoxel(const Scene& scene, ShareBits bits);
+/// `perVoxel`: pageBytesPerVoxel() of settings.bits. `settings.megabytes` is heeded.
+ShareEstimate estimateShare(const Scene& scene, const ShareSettings& settings, double perVoxel);
 
 /// What can be told before any work. Throws UsageError (a transparent background) and Error (a field, colours by voxel,
 /// a mode that is not emission and absorption).

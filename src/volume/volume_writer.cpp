@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/check.h"
 #include "base/error.h"
 #include "base/round_numbers.h"
 #include "base/text.h"
@@ -126,6 +127,10 @@ std::vector<std::string> write(FramesToWrite frames, const std::string& path, co
                                const JobControl& job) {
     const VolumeWriter& writer = writerFor(path);
     const Int3 dims = frames.geometry.dims;
+    if (part.region)
+        for (int a = 0; a < 3; ++a)
+            PELLUCID_CHECK(0 <= part.region->lo[a] && part.region->lo[a] < part.region->hi[a] &&
+                           part.region->hi[a] <= dims[a]);
     const ExcerptPlan plan = planOf(part.region.value_or(VoxelRegion{Int3(0), dims}), dims, part.coarser);
     frames.geometry = plan.geometryOf(frames.geometry);
     frames.type = part.type.value_or(frames.type);
@@ -176,6 +181,14 @@ std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path
     const std::vector<std::string> more = write(std::move(all), path, part, job);
     lost.insert(lost.end(), more.begin(), more.end());
     return lost;
+}
+
+std::vector<std::string> writtenFiles(const std::string& path, int frames) {
+    const VolumeWriter& writer = writerFor(path);
+    std::vector<std::string> files{path};
+    if (writer.filesBeside != nullptr)
+        for (std::string& file : writer.filesBeside(path, frames)) files.push_back(std::move(file));
+    return files;
 }
 
 void checkVolumeSuffix(const std::string& path) { static_cast<void>(writerFor(path)); }

@@ -33,6 +33,9 @@ std::vector<std::string> writeVolume(const Volume& volume, const std::string& pa
 std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path, const WrittenPart& part = {},
                                      const JobControl& job = {});
 
+/// The files that writing so many frames replaces: `path`, and those beside it. Throws as checkVolumeSuffix() does.
+std::vector<std::string> writtenFiles(const std::string& path, int frames = 1);
+
 /// Throws UsageError where writeVolume() knows no format for this suffix.
 void checkVolumeSuffix(const std::string& path);
 

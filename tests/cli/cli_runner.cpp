@@ -57,6 +57,14 @@ nlohmann::json Workshop::json(std::vector<std::string> arguments) const {
     return nlohmann::json::parse(outcome.out);
 }
 
+nlohmann::json Workshop::jsonAndNotes(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    const Outcome outcome = run(arguments);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    return nlohmann::json::parse(outcome.out);
+}
+
 void Workshop::write(const std::string& name, const std::string& bytes) const {
     std::ofstream(path(name), std::ios::binary) << bytes;
 }

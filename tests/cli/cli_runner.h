@@ -35,6 +35,8 @@ public:
     Outcome runWithFilesUpTo(std::size_t mostBytes, const std::vector<std::string>& arguments) const;
     /// Runs with --json, requires status 0 and nothing on stderr, and reads the object.
     nlohmann::json json(std::vector<std::string> arguments) const;
+    /// The same where there may be notes on stderr.
+    nlohmann::json jsonAndNotes(std::vector<std::string> arguments) const;
 
     std::filesystem::path path(const std::string& name) const { return m_folder / name; }
     void write(const std::string& name, const std::string& bytes) const;

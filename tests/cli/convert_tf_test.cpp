@@ -27,10 +27,10 @@ bool says(const json& list, const std::string& words) {
 TEST_CASE("a transfer function is converted for another program", "[cli][convert]") {
     const Workshop w;
     const json told =
-        w.json(Words{"convert", "tents:3:0.4", "--to", "paraview", "--out", "a.paraview.json"} + kForVolume);
+        w.jsonAndNotes(Words{"convert", "tents:3:0.4", "--to", "paraview", "--out", "a.paraview.json"} + kForVolume);
     CHECK(told["command"] == "convert");
     CHECK(told["to"] == "paraview");
-    const json info = w.json(Words{"info"} + kVolume);
+    const json info = w.jsonAndNotes(Words{"info"} + kVolume);
     CHECK(told["range"] == info["range"]);
     CHECK(says(told["losses"], "3 features"));
     CHECK_FALSE(says(told["losses"], "no volume"));
@@ -38,8 +38,8 @@ TEST_CASE("a transfer function is converted for another program", "[cli][convert
 
     // Opened with the volume it has the opacities that it had; only its features are made anew.
     const Words measure{"measure"};
-    const json before = w.json(measure + kVolume + Words{"--tf", "tents:3:0.4"});
-    const json after = w.json(measure + kVolume + Words{"--tf", "a.paraview.json"});
+    const json before = w.jsonAndNotes(measure + kVolume + Words{"--tf", "tents:3:0.4"});
+    const json after = w.jsonAndNotes(measure + kVolume + Words{"--tf", "a.paraview.json"});
     REQUIRE(after["features"].size() == 3);
     for (std::size_t f = 0; f < 3; ++f) {
         CHECK(after["features"][f]["opacity"].get<double>() == Approx(0.4).margin(1e-6));
@@ -50,8 +50,8 @@ TEST_CASE("a transfer function is converted for another program", "[cli][convert
     CHECK_THAT(said.err, Catch::Contains("opacities are converted from paths of"));
 
     // And on from there: sqrt(3) voxels to one.
-    w.json(Words{"convert", "a.paraview.json", "--to", "pellucid", "--out", "b.tf.json"} + kForVolume);
-    CHECK(w.json(measure + kVolume + Words{"--tf", "b.tf.json"})["features"][1]["opacity"].get<double>() ==
+    w.jsonAndNotes(Words{"convert", "a.paraview.json", "--to", "pellucid", "--out", "b.tf.json"} + kForVolume);
+    CHECK(w.jsonAndNotes(measure + kVolume + Words{"--tf", "b.tf.json"})["features"][1]["opacity"].get<double>() ==
           Approx(0.4).margin(1e-6));
 }
 
@@ -61,16 +61,16 @@ TEST_CASE("every format is written and opened again", "[cli][convert]") {
                              "inviwo", "niivue", "vtkjs", "csv", "imagevis3d", "mitk", "itksnap"}) {
         INFO(name);
         const std::string file = std::string(name) + ".any";
-        const json told = w.json(Words{"convert", "tents:2:0.5", "--to", name, "--out", file} + kForVolume);
+        const json told = w.jsonAndNotes(Words{"convert", "tents:2:0.5", "--to", name, "--out", file} + kForVolume);
         CHECK(told["losses"].empty() == (std::string(name) == "pellucid"));
-        const json opened = w.json(Words{"measure"} + kVolume + Words{"--tf", file});
+        const json opened = w.jsonAndNotes(Words{"measure"} + kVolume + Words{"--tf", file});
         CHECK(opened["features"].size() >= 1);
     }
 }
 
 TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli][convert]") {
     const Workshop w;
-    const json told = w.json({"convert", "tents:2", "--to", "voreen", "--out", "a.tfi"});
+    const json told = w.jsonAndNotes({"convert", "tents:2", "--to", "voreen", "--out", "a.tfi"});
     CHECK(says(told["losses"], "no data range is known"));
     CHECK(says(told["losses"], "no volume is known"));
     CHECK_FALSE(told.contains("range"));
@@ -95,5 +95,5 @@ TEST_CASE("answers are written for other programs, too", "[cli][convert]") {
     const Outcome outcome = w.run(Words{"refine"} + kVolume + Words{"--tf", "ramp:4", "--out-tf", "a.vp"});
     CHECK(outcome.status == 0);
     CHECK_THAT(outcome.err, Catch::Contains("not stored"));
-    CHECK(w.json(Words{"measure"} + kVolume + Words{"--tf", "a.vp"})["features"].size() >= 1);
+    CHECK(w.jsonAndNotes(Words{"measure"} + kVolume + Words{"--tf", "a.vp"})["features"].size() >= 1);
 }

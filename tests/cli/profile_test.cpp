@@ -80,7 +80,7 @@ TEST_CASE("commands take a transfer function of Voreen", "[cli][published]") {
         <key><intensity value="0.4"/><colorL r="255" g="0" b="0" a="102"/></key>
         <key><intensity value="0.6"/><colorL r="255" g="0" b="0" a="0"/></key>
         </Keys></TransFuncIntensity></VoreenData>)");
-    const json told = w.json({"measure", "sample:disks", "--sample-size", "12", "--tf", "one.tfi"});
+    const json told = w.jsonAndNotes({"measure", "sample:disks", "--sample-size", "12", "--tf", "one.tfi"});
     CHECK(told["volume"]["range"] == json({0, 100}));
     CHECK(told["features"][0]["opacity"] == Approx(0.4)); // 102/255
     w.write("bad.tfi", "<VoreenData>\n<Keys>");
@@ -104,7 +104,7 @@ TEST_CASE("refinement and volatility go by the published profile and name it", "
         <key><intensity value="0.9"/><colorL r="0" g="0" b="255" a="0"/></key>
         </Keys></TransFuncIntensity></VoreenData>)");
     const Words kRefine{"refine", "sample:shells", "--sample-size", "16", "--tf", "three.tfi"};
-    const json own = w.json(kRefine), told = w.json(kRefine + kPublished);
+    const json own = w.jsonAndNotes(kRefine), told = w.jsonAndNotes(kRefine + kPublished);
     CHECK_FALSE(own.contains("profile"));
     CHECK(told["profile"] == "published");
     // By the histogram of the same data, in the same places.
@@ -126,7 +126,7 @@ TEST_CASE("refinement and volatility go by the published profile and name it", "
     CHECK(told["edges_before"] != own["edges_before"]);
     // A hue is compared as it is, red from blue by 240 degrees, not by 120: points 1 to 9 of 11 lie at hue 0, 120, 240
     // (the ends have their neighbours' colours), distances from 0 over their sum 3/3 + 4·2/3: 11/3.
-    const json byHue = w.json(kRefine + kPublished + Words{"--hue", "0"});
+    const json byHue = w.jsonAndNotes(kRefine + kPublished + Words{"--hue", "0"});
     CHECK(byHue["priority"] == json({{"kind", "hue"}, {"hue", 0.0}}));
     CHECK(byHue["factors"][1].get<double>() == Approx(0).margin(1e-12));
     CHECK(byHue["factors"][5].get<double>() == Approx(1.0 / 11));

@@ -32,7 +32,7 @@ TEST_CASE("share writes a page, and says that the voxels are in it", "[cli][shar
     CHECK(w.read("page.html").find("<h1>A &#38; B</h1>") != std::string::npos);
 
     const json coarse =
-        w.json(kSmall + Words{"--voxels", "1000", "--bits", "8", "--density-slider", "off", "--out", "c.html"});
+        w.jsonAndNotes(kSmall + Words{"--voxels", "1000", "--bits", "8", "--density-slider", "off", "--out", "c.html"});
     CHECK(coarse["dims"] == json({8, 8, 8}));
     CHECK(coarse["full_dims"] == json({16, 16, 16}));
     CHECK(coarse["factor"] == 2);

@@ -65,7 +65,7 @@ TEST_CASE("a session's thumbnail has the session's colours", "[cli][thumbnail]")
     pellucid::writeSession(session, w.path("red.pellucid.json").string());
     REQUIRE(w.run({"thumbnail", "red.pellucid.json", "red.png", "--size", "64"}).status == 0);
     const pellucid::Image image = pellucid::readImage(w.path("red.png").string());
-    CHECK(drawnPixels(image) > 64 * 64 / 5);
+    CHECK(drawnPixels(image) > 64 * 64 / 6);
     for (std::size_t p = 0; p < image.rgba.size(); p += 4) {
         REQUIRE(image.rgba[p + 1] == Approx(0).margin(0.01)); // nothing but red and black
         REQUIRE(image.rgba[p + 2] == Approx(0).margin(0.01));

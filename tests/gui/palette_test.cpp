@@ -139,6 +139,13 @@ TEST_CASE("keys are changed, conflicts are told, and defaults come back", "[pale
         CHECK(other.child<QAction>("saveSessionAction").shortcuts().isEmpty());
     }
     KeysDialog dialog(actions.rows(), keysOf(actions), &w.window);
+    { // The default of one action takes its key from the other that has it.
+        auto& list = *dialog.findChild<QTreeWidget*>("keysDialogList");
+        list.setCurrentItem(rowOf(list, "Save session"));
+        dialog.findChild<QPushButton*>("keysDialogDefault")->click();
+        CHECK(save.shortcuts() == ofSave);
+        CHECK(caption.shortcuts().isEmpty());
+    }
     dialog.findChild<QPushButton*>("keysDialogAllDefault")->click();
     CHECK(caption.shortcuts() == ofCaption);
     CHECK(save.shortcuts() == ofSave);

@@ -65,6 +65,9 @@ TEST_CASE("a caption says view, shares, what hides what, and what is left out", 
     CHECK_THAT(caption(facts), StartsWith("From the right, lit, cut open: tooth, t = 3 s. Enamel"));
     facts.mode = RenderMode::Mip; // which shows no features
     CHECK(caption(facts) == "From the right, the largest value along each ray, lit, cut open: tooth, t = 3 s.");
+    facts.mode = RenderMode::Composite;
+    for (CaptionFeature& f : facts.features) f.vws = f.visibility = 0;
+    CHECK(caption(facts) == "From the right, lit, cut open: tooth, t = 3 s. Nothing is visible.");
     facts = {};
     facts.title = "empty";
     facts.from = "from above";

@@ -75,7 +75,7 @@ TEST_CASE("each format writes what it reads back as the same curves", "[tf][form
         const bool hasRange = name != "imagevis3d" && name != "itksnap";
         CHECK(read.tf.range.has_value() == hasRange);
         if (hasRange) CHECK(*read.tf.range == *tf.range);
-        CHECK(says(read.notices, "says of no data values") == !hasRange);
+        CHECK(says(read.notices, "gives no data range") == !hasRange);
         const bool hasOpacities = name != "vtkjs" && name != "paraview-xml";
         const bool hasTable = name == "niivue" || name == "imagevis3d"; // steps have the width of an entry
         const double colorMargin = name == "niivue" ? 0.02 : name == "itksnap" || name == "voreen" ? 0.003 : 1e-3;
@@ -101,7 +101,7 @@ TEST_CASE("what is lost is said", "[tf][formats]") {
         CHECK(says(losses, "features are not stored"));
         CHECK(says(losses, "an eye hides"));
         const std::string name = format.name;
-        CHECK(says(losses, "vanish") == (name == "voreen" || name == "niivue" || name == "itksnap"));
+        CHECK(says(losses, "below 0.002") == (name == "voreen" || name == "niivue" || name == "itksnap"));
         CHECK(says(losses, "no data range:") == (name == "imagevis3d" || name == "itksnap"));
         CHECK(says(losses, "colours only") == (name == "vtkjs" || name == "paraview-xml"));
         CHECK(!says(losses, "is known"));
@@ -165,7 +165,7 @@ TEST_CASE("presets of ParaView are read as it writes them", "[tf][formats]") {
     const ReadTf first = readOf("paraview", list);
     CHECK(says(first.notices, "the first of 2 presets, 'first'"));
     CHECK(says(first.notices, "colours only"));
-    CHECK(says(first.notices, "says of no data values"));
+    CHECK(says(first.notices, "gives no data range"));
     CHECK(!first.tf.range); // 0 to 1 is whatever the range is
     CHECK(first.length.kind == OpacityLength::Kind::ParaView);
     CHECK_THAT(first.tf.extraJson, Contains("somebody"));
@@ -173,7 +173,7 @@ TEST_CASE("presets of ParaView are read as it writes them", "[tf][formats]") {
     const ReadTf second = readOf("paraview", list, "second");
     CHECK(second.tf.range == ValueRange{1, 100});
     CHECK(second.tf.opacity(9.0 / 99) == Approx(0.5).margin(0.003)); // 10 is half way from 1 to 100
-    CHECK(says(second.notices, "logarithmic scale is worked in"));
+    CHECK(says(second.notices, "logarithmic scale has been converted"));
     CHECK_THAT(messageOf("paraview", list, "third"), Contains("no preset 'third'") && Contains("first, second"));
 
     const auto one = [](const std::string& keys) { return R"([{"Name": "a", )" + keys + "}]"; };
@@ -234,7 +234,7 @@ TEST_CASE("volume properties of 3D Slicer are read in all three files", "[tf][fo
     CHECK_THAT(messageOf("slicer-xml", scene, "CT-B"), Contains("no points") && Contains("'CT-B'"));
     CHECK_THAT(messageOf("slicer-vp", "1\n1\n0.9\n"), Contains("3 of 9 lines"));
     CHECK_THAT(messageOf("slicer-vp", "1\n1\n0.9\n0.1\n0.2\n10\n4 0 0 1\n4 0 1 1 1\n8 0 1 0 0 1 1 1 1\n"),
-               Contains("'4' numbers, and has 3"));
+               Contains("'4' numbers but has 3"));
     CHECK_THAT(messageOf("slicer-vp", "1\n1\n0,9\n0.1\n0.2\n10\n4 0 0 1 1\n4 0 1 1 1\n8 0 1 0 0 1 1 1 1\n"),
                Contains("'0,9' is not a number") && Contains("line 3"));
     CHECK_THAT(messageOf("slicer-vp", "1\n1\n1\n1\n1\n1\n3 0 0 1\n4 0 1 1 1\n4 0 1 0 0\n"), Contains("multiple of 2"));
@@ -297,6 +297,21 @@ TEST_CASE("files of Inviwo, niivue, ImageVis3D, MITK and ITK-SNAP are read as th
     CHECK(inviwo.tf.opacity(0.75) == Approx(0.5));
     CHECK(inviwo.tf.opacity(1) == Approx(0.6));
     CHECK(inviwo.tf.color(0.5).r == Approx(0.5));
+    // A mask over data values, 20 to 80 of 0 to 100; and one with nothing in it.
+    const auto masked = [](const std::string& lo, const std::string& hi) {
+        return readOf("inviwo", "<InviwoWorkspace version=\"3\"><maskMin content=\"" + lo + "\"/><maskMax content=\"" +
+                                    hi +
+                                    "\"/><type content=\"1\"/><Points>"
+                                    "<Point><pos content=\"0\"/><rgba x=\"0\" y=\"0\" z=\"0\" w=\"0.5\"/></Point>"
+                                    "<Point><pos content=\"100\"/><rgba x=\"1\" y=\"0\" z=\"0\" w=\"0.5\"/></Point>"
+                                    "</Points></InviwoWorkspace>");
+    };
+    const ReadTf absolute = masked("20", "80");
+    CHECK(absolute.tf.opacity(0.1) == 0);
+    CHECK(absolute.tf.opacity(0.5) == Approx(0.5));
+    CHECK(absolute.tf.opacity(0.9) == 0);
+    for (const char* hi : {"20", "10"}) CHECK(masked("20", hi).tf.opacity(0.5) == 0);
+    CHECK(masked("200", "300").tf.opacity(0.5) == 0);
     CHECK_THAT(
         messageOf("inviwo", R"(<InviwoWorkspace><Points><Point><pos content="1.5"/><rgba x="0" y="0" z="0" w="0"/>
         </Point></Points></InviwoWorkspace>)"),

@@ -266,6 +266,28 @@ TEST_CASE("a frame that cannot be read leaves no file", "[writer]") {
     }
 }
 
+TEST_CASE("frames of an earlier collection stay until all new ones are there", "[writer]") {
+    const TempFolder folder;
+    const auto frames = [](int brokenOne) {
+        SeriesListing listing;
+        listing.frames.resize(3);
+        return std::make_shared<TimeSeries>(listing, [brokenOne](int frame, const JobControl&) {
+            if (frame == brokenOne) throw FileError("broken", "c.raw", "copy it again");
+            return Volume(Geometry{{2, 2, 2}}, SampleArray<std::uint8_t>(std::vector<std::uint8_t>(
+                                                   8, static_cast<std::uint8_t>(frame + 10 * (brokenOne + 2)))));
+        });
+    };
+    const std::string path = folder.path("a.pvd");
+    writeSeries(*frames(-1), path); // frame n is n + 10 everywhere
+    CHECK_THROWS_WITH(writeSeries(*frames(2), path), Contains("broken"));
+    CHECK(folder.fileCount() == 4);
+    for (int n = 0; n < 3; ++n) CHECK(load(folder.path("a_" + std::to_string(n) + ".vti")).value(0) == n + 10);
+    CHECK(writtenFiles(path, 3) ==
+          std::vector<std::string>{path, folder.path("a_0.vti"), folder.path("a_1.vti"), folder.path("a_2.vti")});
+    CHECK(writtenFiles(folder.path("b.mhd")) == std::vector<std::string>{folder.path("b.mhd"), folder.path("b.raw")});
+    CHECK(writtenFiles(folder.path("b.nii")) == std::vector<std::string>{folder.path("b.nii")});
+}
+
 TEST_CASE("a region and a coarser copy are written where they lie", "[writer]") {
     const TempFolder folder;
     Geometry g;
@@ -298,6 +320,10 @@ TEST_CASE("a folder of Zarr is replaced by another one, and nothing else is", "[
     writeVolume(other, path);
     CHECK(load(path).samples() == other.samples());
     CHECK(folder.fileCount() == 1); // nothing is left of the first one
+    // More than one image: somebody has put labels into it.
+    std::filesystem::create_directories(path + "/labels");
+    CHECK_THROWS_AS(writeVolume(other, path), FileError);
+    CHECK(std::filesystem::exists(path + "/labels"));
     std::filesystem::create_directories(folder.path("own.zarr"));
     std::ofstream(folder.path("own.zarr/letter.txt")) << "keep me";
     CHECK_THROWS_AS(writeVolume(other, folder.path("own.zarr")), FileError);

@@ -277,8 +277,10 @@ void OpenController::show(const Request& request, Opened& opened) {
     }
     if (tfFromFile) {
         noteWindow(*m_services.store().session().tf());
-        if (isForeignTf(request.tfPath.toStdString()))
-            noteForeign(m_services, readTfNamed(request.tfPath.toStdString()));
+        m_services.attempt(tr("Cannot open the transfer function"), [&] { // it may be gone by now
+            if (isForeignTf(request.tfPath.toStdString()))
+                noteForeign(m_services, readTfNamed(request.tfPath.toStdString()));
+        });
     }
     Q_EMIT this->opened();
     if (request.then) request.then();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <QApplication>
 #include <QClipboard>
@@ -216,24 +217,45 @@ void SaveController::saveImage(const SaveImageOptions& options) {
 }
 
 void SaveController::saveVolume(const SaveVolumeOptions& options) {
-    if (!m_services.store().hasVolume()) return;
-    if (!m_services.attempt(tr("Cannot save the volume"), [&] { checkVolumeSuffix(options.path.toStdString()); }))
-        return;
-    const Scene& scene = m_services.scene();
-    VolumeTask task{scene.volume, scene.series, options.path, options.part};
+    if (m_services.store().hasVolume()) saveVolume(options, nowSavable());
+}
+
+void SaveController::saveVolume(const SaveVolumeOptions& options, const Savable& from) {
+    const std::string path = options.path.toStdString();
+    if (!m_services.attempt(tr("Cannot save the volume"), [&] { requireNotOpen(path, options, from); })) return;
+    VolumeTask task{from.scene.volume, from.scene.series, options.path, options.part};
     if (options.allFrames) task.volume.reset();
-    if (options.isField && m_fields.field() != nullptr) task.volume = m_fields.field()->volume;
+    if (options.isField) task.volume = from.field;
     m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());
     m_volumes.start(std::move(task), options.path);
     Q_EMIT busyChanged();
 }
 
-SavableVolume SaveController::savable() const {
-    const Scene& scene = m_services.scene();
+void SaveController::requireNotOpen(const std::string& path, const SaveVolumeOptions& options, const Savable& from) {
+    if (options.isField && !from.field)
+        throw Error("the field is not there yet", from.scene.volume->title, "save it once it has been computed");
+    const std::vector<std::string> written = writtenFiles(path, options.allFrames ? from.scene.series->size() : 1);
+    for (const Variable& variable : *from.scene.session.variables)
+        for (const std::string& open : filesOf(variable.source))
+            for (const std::string& file : written) {
+                std::error_code ec;
+                if (std::filesystem::equivalent(open, file, ec))
+                    throw FileError("the volume that is open comes from this file", file, "choose another name");
+            }
+}
+
+SaveController::Savable SaveController::nowSavable() const {
+    Savable from{m_services.scene(), nullptr};
+    if (m_fields.state() == FieldController::State::Current) from.field = m_fields.field()->volume;
+    return from;
+}
+
+SavableVolume SaveController::described(const Savable& from) const {
+    const Scene& scene = from.scene;
     const Int3 dims = scene.volume->dims();
     SavableVolume there{dims, scene.volume->sampleType(), scene.series->size()};
     there.frameName = QString::fromStdString(scene.series->listing().label(scene.session.frame));
-    if (m_fields.field() != nullptr) there.fieldName = m_fields.name();
+    if (from.field) there.fieldName = m_fields.name();
     const Clipping& clip = *scene.session.clipping;
     if (clip.lo == Vec3(0) && clip.hi == Vec3(1)) return there;
     VoxelRegion region;
@@ -247,17 +269,30 @@ SavableVolume SaveController::savable() const {
 
 void SaveController::chooseVolume() {
     if (!m_services.store().hasVolume()) return;
+    const Savable from = nowSavable(); // what is saved is what was there, however long the dialog is open
     const QString folder = keptFolder("savedVolumeFolder", QDir::homePath());
-    SaveVolumeDialog dialog(QDir(folder).filePath(baseName(m_services.scene()) + ".nrrd"), savable(),
+    SaveVolumeDialog dialog(QDir(folder).filePath(baseName(from.scene) + ".nrrd"), described(from),
                             m_services.window());
     while (dialog.exec() == QDialog::Accepted) {
         SaveVolumeOptions options = dialog.options();
         if (options.path.isEmpty()) continue;
         if (QFileInfo(options.path).suffix().isEmpty()) options.path += ".nrrd";
-        const QString question = tr("%1 exists. Replace it?").arg(QFileInfo(options.path).fileName());
-        if (!mayReplace(options.path, tr("Save volume"), question)) continue;
+        QStringList there;
+        if (!m_services.attempt(tr("Cannot save the volume"), [&] {
+                const int frames = options.allFrames ? from.scene.series->size() : 1;
+                for (const std::string& file : writtenFiles(options.path.toStdString(), frames))
+                    if (const QFileInfo info(QString::fromStdString(file)); info.exists()) there << info.fileName();
+            }))
+            continue;
+        const QString question = there.size() == 1 ? tr("%1 exists. Replace it?").arg(there.front())
+                                                   : tr("%1 and %n other file(s) exist. Replace them?", nullptr,
+                                                        static_cast<int>(there.size()) - 1)
+                                                         .arg(there.value(0));
+        if (!there.isEmpty() &&
+            QMessageBox::question(m_services.window(), tr("Save volume"), question) != QMessageBox::Yes)
+            continue;
         keepFolderOf("savedVolumeFolder", options.path);
-        return saveVolume(options);
+        return saveVolume(options, from);
     }
 }
 

@@ -92,7 +92,16 @@ private:
     bool chooseTf(bool askForName);
     void chooseImage();
     void chooseVolume();
-    SavableVolume savable() const;
+    /// What was there when saving was asked for.
+    struct Savable {
+        Scene scene;
+        std::shared_ptr<const Volume> field; ///< that is drawn; null: none is, or not of this scene
+    };
+    Savable nowSavable() const;
+    SavableVolume described(const Savable& from) const;
+    void saveVolume(const SaveVolumeOptions& options, const Savable& from);
+    /// Throws Error where there is no field to save, and where a file would be replaced that an open volume comes from.
+    static void requireNotOpen(const std::string& path, const SaveVolumeOptions& options, const Savable& from);
     void chooseBars();
     void chooseTfDrawing();
     /// Asks where a drawing is to go; empty: nowhere.

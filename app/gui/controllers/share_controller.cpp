@@ -1,5 +1,7 @@
 #include "controllers/share_controller.h"
 
+#include <map>
+
 #include <QDesktopServices>
 #include <QDir>
 #include <QFileInfo>
@@ -61,9 +63,14 @@ void ShareController::choose() {
     offered.settings.title = proposedTitle(scene);
     offered.path = QDir(keptFolder("shareFolder", QDir::homePath()))
                        .filePath(QString::fromStdString(offered.settings.title) + ".html");
-    ShareDialog dialog(
-        offered, [&scene](const ShareSettings& settings) { return estimateShare(scene, settings); },
-        m_services.window());
+    std::map<ShareBits, double> perVoxel; // once of each: it compresses
+    const auto estimate = [&](const ShareSettings& settings) {
+        const auto known = perVoxel.find(settings.bits);
+        const double bytes = known != perVoxel.end() ? known->second : pageBytesPerVoxel(scene, settings.bits);
+        perVoxel[settings.bits] = bytes;
+        return estimateShare(scene, settings, bytes);
+    };
+    ShareDialog dialog(offered, estimate, m_services.window());
     while (dialog.exec() == QDialog::Accepted) {
         const ShareOptions chosen = dialog.options();
         const QString file = QFileInfo(chosen.path).fileName();

@@ -12,13 +12,13 @@ struct ActionRow {
     QString place;
 };
 
-/// "Save session": the action's text without its mnemonic and its dots.
-inline QString plainText(const QAction& action) {
-    QString text = action.text();
+/// "Save session": a text without its mnemonic and its dots.
+inline QString plainText(QString text) {
     text.remove('&');
     while (text.endsWith(QChar(0x2026))) text.chop(1);
     return text;
 }
+inline QString plainText(const QAction& action) { return plainText(action.text()); }
 
 /// "Ctrl+Y, Ctrl+Shift+Z"; empty where it has no key.
 inline QString keysText(const QAction& action) {

@@ -75,7 +75,7 @@ KeysDialog::KeysDialog(std::vector<ActionRow> rows, Keys keys, QWidget* parent)
     });
     connect(m_set, &QPushButton::clicked, this, &KeysDialog::setKey);
     connect(m_none, &QPushButton::clicked, this, [this] { setKeys(*selected(), {}); });
-    connect(m_default, &QPushButton::clicked, this, [this] { setKeys(*selected(), m_keys.byDefault(*selected())); });
+    connect(m_default, &QPushButton::clicked, this, [this] { give(*selected(), m_keys.byDefault(*selected())); });
     connect(m_allDefault, &QPushButton::clicked, this, [this] {
         for (const ActionRow& row : m_rows) setKeys(*row.action, m_keys.byDefault(*row.action));
     });
@@ -127,14 +127,17 @@ void KeysDialog::follow() {
 }
 
 void KeysDialog::setKey() {
-    const QKeySequence key(m_edit->keySequence()[0]);
-    if (QAction* const other = holder()) {
-        QList<QKeySequence> left = other->shortcuts();
-        left.removeAll(key);
-        setKeys(*other, left);
-    }
-    setKeys(*selected(), {key});
+    give(*selected(), {QKeySequence(m_edit->keySequence()[0])});
     m_edit->clear();
+}
+
+void KeysDialog::give(QAction& action, const QList<QKeySequence>& keys) {
+    for (const ActionRow& row : m_rows) {
+        if (row.action == &action) continue;
+        QList<QKeySequence> left = row.action->shortcuts();
+        if (left.removeIf([&](const QKeySequence& key) { return keys.contains(key); }) > 0) setKeys(*row.action, left);
+    }
+    setKeys(action, keys);
 }
 
 void KeysDialog::setKeys(QAction& action, const QList<QKeySequence>& keys) {

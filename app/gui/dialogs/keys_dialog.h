@@ -33,6 +33,8 @@ private:
     void find(const QString& text);
     void follow();
     void setKey();
+    /// Takes them from other actions that have them.
+    void give(QAction& action, const QList<QKeySequence>& keys);
     void setKeys(QAction& action, const QList<QKeySequence>& keys);
     QAction* selected() const;
     /// The other action with the key that has been typed; null: none.

@@ -15,12 +15,6 @@ namespace {
 
 constexpr const char* kWords = "toolBarWords";
 
-QString plain(QString text) {
-    text.remove('&');
-    while (text.endsWith(QChar(0x2026))) text.chop(1);
-    return text;
-}
-
 /// None of an empty text, of which Qt would make one that no key is in.
 QList<QKeySequence> keysIn(const QString& text) {
     return text.isEmpty() ? QList<QKeySequence>() : QKeySequence::listFromString(text);
@@ -52,7 +46,7 @@ QAction* Actions::add(const QString& menu, const QString& id, const QString& tex
         if (trigger) trigger();
         refresh(); // a check mark shows what is, not what was clicked
     });
-    m_entries.push_back({menu, enabled, more, action, byDefault, tip.isEmpty() ? plain(text) : tip, tip});
+    m_entries.push_back({menu, enabled, more, action, byDefault, tip.isEmpty() ? plainText(text) : tip, tip});
     setTips(*action, m_entries.back().tool, tip);
     return action;
 }
@@ -75,7 +69,7 @@ void Actions::addGestures(std::vector<Gesture> gestures) {
 
 std::vector<ActionRow> Actions::rows() const {
     std::vector<ActionRow> rows;
-    for (const Entry& e : m_entries) rows.push_back({e.action, plain(e.menu).replace('/', " › ")});
+    for (const Entry& e : m_entries) rows.push_back({e.action, plainText(e.menu).replace('/', " › ")});
     return rows;
 }
 
@@ -101,7 +95,7 @@ void Actions::refresh() {
         if (e.enabled) e.action->setEnabled(e.enabled());
         if (e.more.checked) e.action->setChecked(e.more.checked());
         if (e.more.caption) e.action->setText(e.more.caption());
-        if (e.more.say) setTips(*e.action, plain(e.more.say()), e.more.say());
+        if (e.more.say) setTips(*e.action, plainText(e.more.say()), e.more.say());
     }
 }
 
@@ -110,7 +104,7 @@ QMenu* Actions::menuAt(QMainWindow& window, const QString& path) {
     const auto slash = path.lastIndexOf('/');
     const QString name = path.mid(slash + 1);
     QMenu* made = slash < 0 ? window.menuBar()->addMenu(name) : menuAt(window, path.left(slash))->addMenu(name);
-    made->setObjectName(plain(name).toLower().replace(' ', '_') + "Menu");
+    made->setObjectName(plainText(name).toLower().replace(' ', '_') + "Menu");
     made->setToolTipsVisible(true);
     return m_menus[path] = made;
 }
@@ -120,10 +114,26 @@ QMenu* Actions::menu(const QString& path) const {
     return known == m_menus.end() ? nullptr : known->second;
 }
 
+void Actions::giveKeptKeys() {
+    // A later version may give a key to one action that somebody has given to another.
+    for (const Entry& kept : m_entries) {
+        if (kept.action->shortcuts() == kept.keys) continue;
+        for (const Entry& other : m_entries) {
+            QList<QKeySequence> left = other.action->shortcuts();
+            if (&other == &kept || left != other.keys) continue;
+            left.removeIf([&](const QKeySequence& key) { return kept.action->shortcuts().contains(key); });
+            if (left == other.keys) continue;
+            other.action->setShortcuts(left);
+            setTips(*other.action, other.tool, other.status);
+        }
+    }
+}
+
 void Actions::build(QMainWindow& window) {
     auto* bar = new QToolBar(tr("Tools"), &window);
     bar->setObjectName("viewToolBar");
     bar->setMovable(false);
+    giveKeptKeys();
     QString barGroup;
     for (const Entry& e : m_entries) {
         e.action->setParent(&window);
@@ -183,7 +193,7 @@ QString Actions::keyTable(const QString& text) const {
     for (const Gesture& g : m_gestures) row(g.place, g.how, g.what);
     for (const Entry& e : m_entries)
         if (const QString keys = keysText(*e.action); !keys.isEmpty())
-            row(plain(e.menu.section('/', 0, 0)), keys, plain(e.action->text()));
+            row(plainText(e.menu.section('/', 0, 0)), keys, plainText(e.action->text()));
     return QStringLiteral("<table cellpadding=2>%1</table>").arg(rows);
 }
 

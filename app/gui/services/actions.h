@@ -85,7 +85,8 @@ private:
     QMainWindow* m_window = nullptr;   // from build() on
     QToolBar* m_bar = nullptr;
     QMenu* menuAt(QMainWindow& window, const QString& path);
-    void placeBar(); ///< with words in a row of its own, else beside the menus
+    void giveKeptKeys(); ///< a key that somebody has given to an action is no other one's
+    void placeBar();     ///< with words in a row of its own, else beside the menus
 };
 
 /// Adds entries to one menu, which are enabled alike; parameters as those of Actions::add().

@@ -209,7 +209,7 @@ void MainWindow::addHelpActions() {
     actions.add(tr("&Help"), "keysAction", tr("&Mouse and keys"), "F1", {},
                 [this] { showKeys(m_services->actions(), this); });
     actions.add(tr("&Help"), "paletteAction", tr("&Do something…"), "Ctrl+K",
-                tr("Finds whatever can be done by a few letters of it, and does it"),
+                tr("Finds any command by a few letters of its name"),
                 [this] { showCommandPalette(m_services->actions().rows(), this); });
     actions.add(tr("&Help"), "shortcutsAction", tr("&Keyboard shortcuts…"), {}, tr("Which keys do what, to be changed"),
                 [this] {

@@ -64,7 +64,8 @@ float floatOfHalf(std::uint16_t half) {
 /// What stands between the indices in the name of a chunk: another one could lead out of the folder.
 std::string separatorIn(const JsonValue& text) {
     const std::string separator = text.text();
-    if (separator != "." && separator != "/") text.fail("indices in the names of chunks are not parted by '.' or '/'");
+    if (separator != "." && separator != "/")
+        text.fail("indices in the names of chunks are not separated by '.' or '/'");
     return separator;
 }
 

@@ -1,5 +1,7 @@
 // *.itf, the transfer functions of Inviwo: points with straight RGBA, over a range of their own or that of the data.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "base/round_numbers.h"
@@ -46,14 +48,26 @@ TfCurves pointsIn(const XmlDocument& xml, const XmlElement& points, bool isRelat
     return curves;
 }
 
-/// Opacity 0 below `lo` and above `hi`, with a step at either that lies within 0 to 1.
+/// Opacity 0 below `lo` and above `hi`, which are in the units of the points, with a step at either that lies within
+/// them; 0 everywhere where nothing lies between.
 void mask(TfCurves& curves, double lo, double hi) {
-    if (curves.opacities.empty()) return;
-    const double atLo = opacityAt(curves, lo), atHi = opacityAt(curves, hi);
-    std::erase_if(curves.opacities, [&](const OpacityNode& n) { return n.x <= lo || n.x >= hi; });
     std::vector<OpacityNode>& all = curves.opacities;
-    all.insert(all.begin(), {{lo, lo > 0 ? 0 : atLo, {}}, {lo, atLo, {}}});
-    all.insert(all.end(), {{hi, atHi, {}}, {hi, hi < 1 ? 0 : atHi, {}}});
+    if (all.empty()) return;
+    const double first = all.front().x, last = all.back().x;
+    if (!(lo < hi) || hi < first || lo > last) {
+        for (OpacityNode& n : all) n.opacity = 0;
+        return;
+    }
+    if (lo > first) {
+        const double there = opacityAt(curves, lo);
+        std::erase_if(all, [&](const OpacityNode& n) { return n.x < lo; });
+        all.insert(all.begin(), {{first, 0, {}}, {lo, 0, {}}, {lo, there, {}}});
+    }
+    if (hi < last) { // a step there is that of the mask: what lies before it counts
+        const double there = opacityAt(curves, std::nextafter(hi, first));
+        std::erase_if(all, [&](const OpacityNode& n) { return n.x >= hi; });
+        all.insert(all.end(), {{hi, there, {}}, {hi, 0, {}}, {last, 0, {}}});
+    }
 }
 
 ReadTf readInviwo(const ForeignFile& file) {
@@ -62,8 +76,9 @@ ReadTf readInviwo(const ForeignFile& file) {
     if (!holder) throw FileError("there are no points in it", file.path(), "give a transfer function of Inviwo");
     const bool isRelative = contentOf(xml, holder, "type", 0) == 0;
     TfCurves curves = pointsIn(xml, holder.child("Points"), isRelative);
-    const double lo = contentOf(xml, holder, "maskMin", 0), hi = contentOf(xml, holder, "maskMax", 1);
-    if (isRelative && lo < hi && (lo > 0 || hi < 1)) mask(curves, std::max(lo, 0.0), std::min(hi, 1.0));
+    constexpr double kNone = std::numeric_limits<double>::max();
+    const double lo = contentOf(xml, holder, "maskMin", -kNone), hi = contentOf(xml, holder, "maskMax", kNone);
+    mask(curves, lo, hi);
     ReadTf read = tfOfCurves(curves, isRelative ? std::optional(ValueRange{0, 1}) : std::nullopt, file.path());
     if (isRelative) read.notices.push_back(noDomainNotice());
     read.length = kInviwoLength;

@@ -70,7 +70,7 @@ std::vector<ControlPoint> pointsPer(const std::vector<ControlPoint>& points, dou
     if (ratio == 1) return points;
     std::vector<ControlPoint> result;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (i > 0) bend(points[i - 1], points[i], ratio, kDeepest, result);
+        if (i > 0 && result.size() < kMostNodes) bend(points[i - 1], points[i], ratio, kDeepest, result);
         result.push_back(points[i]);
         result.back().opacity = opacityPer(points[i].opacity, ratio);
     }

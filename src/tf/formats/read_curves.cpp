@@ -28,7 +28,7 @@ void cutValues(TfCurves& curves, std::vector<std::string>& notices) {
 void straightenLogarithm(TfCurves& curves, std::vector<std::string>& notices) {
     if (!curves.isLogarithmic) return;
     if (curves.range().lo > 0) {
-        notices.emplace_back("the logarithmic scale is worked in: positions are those of the values themselves");
+        notices.emplace_back("the logarithmic scale has been converted: positions are those of the values themselves");
         return;
     }
     curves.isLogarithmic = false;
@@ -74,6 +74,10 @@ ReadTf tfOfCurves(TfCurves curves, const std::optional<ValueRange>& positions, c
     if (curves.colors.size() > kMostNodes || curves.opacities.size() > kMostNodes)
         throw FileError("there are more than " + std::to_string(kMostNodes) + " points in it", path,
                         "give a smaller one");
+    if (curves.space == ColorSpace::Ciede2000 && curves.colors.size() > kMostCiede2000Nodes)
+        throw FileError("there are more than " + std::to_string(kMostCiede2000Nodes) +
+                            " colours in it, and they are mixed by CIEDE2000",
+                        path, "give fewer, or another colour space");
     ReadTf read;
     curves.sort();
     cutValues(curves, read.notices);

@@ -119,8 +119,12 @@ json componentOf(const std::vector<ControlPoint>& points, const TfToWrite& tf, c
             {"gradientOpacity", functionOf("piecewiseLinearFunction", std::move(gradient))}};
 }
 
-void update(json& object, const json& kept, const char* key) {
-    if (kept.contains(key) && kept[key].is_object()) object.update(kept[key]);
+/// What was kept of a file goes before the usual, but not before what the transfer function says itself.
+void update(json& object, const json& kept, const char* key, std::initializer_list<const char*> own) {
+    if (!kept.contains(key) || !kept[key].is_object()) return;
+    json more = kept[key];
+    for (const char* name : own) more.erase(name);
+    object.update(more);
 }
 
 WrittenTf writeProperty(const TfToWrite& tf) {
@@ -128,7 +132,7 @@ WrittenTf writeProperty(const TfToWrite& tf) {
     const SlicerLook look = keptLook(tf);
     const json others = keptOthers(tf);
     json component = componentOf(points, tf, look);
-    update(component, others, "component");
+    update(component, others, "component", {"rgbTransferFunction", "scalarOpacity", "gradientOpacity"});
     json property = {{"effectiveRange", {tf.range().lo, tf.range().hi}},
                      {"isoSurfaceValues", json::array()},
                      {"independentComponents", true},
@@ -137,7 +141,7 @@ WrittenTf writeProperty(const TfToWrite& tf) {
                      {"clippedVoxelIntensity", -1e10},
                      {"scatteringAnisotropy", 0.0},
                      {"components", json::array({std::move(component)})}};
-    update(property, others, "property");
+    update(property, others, "property", {"components", "effectiveRange"});
     WrittenTf written;
     addVtkLosses(written.losses, points);
     written.text = json{{"@schema", kSchema}, {"volumeProperties", json::array({std::move(property)})}}.dump(

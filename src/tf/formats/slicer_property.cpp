@@ -30,7 +30,8 @@ std::vector<double> countedNumbers(std::string_view text, const std::string& whe
     const double count = numbers.front();
     numbers.erase(numbers.begin());
     if (count != static_cast<double>(numbers.size()))
-        throw FileError("it says of " + inQuotes(words.front()) + " numbers, and has " + std::to_string(numbers.size()),
+        throw FileError("it announces " + inQuotes(words.front()) + " numbers but has " +
+                            std::to_string(numbers.size()),
                         where, "correct the file");
     return numbers;
 }

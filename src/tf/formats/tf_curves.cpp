@@ -127,7 +127,8 @@ bool isClose(const Piece& piece, double from, double to, const ControlPoint& p, 
 
 void follow(const Piece& piece, double from, double to, int depth, std::vector<ControlPoint>& points) {
     const double middle = (from + to) / 2;
-    if (depth == 0 || isClose(piece, from, to, piece.point(from), piece.point(to)) || middle <= from || middle >= to)
+    if (depth == 0 || points.size() >= kMostNodes || isClose(piece, from, to, piece.point(from), piece.point(to)) ||
+        middle <= from || middle >= to)
         return;
     follow(piece, from, middle, depth - 1, points);
     points.push_back(piece.point(middle));

@@ -46,6 +46,8 @@ struct TfCurves {
 
 /// The most nodes that a curve of a file may have.
 inline constexpr std::size_t kMostNodes = 65536;
+/// Each piece between two of these is a way through all colours, which takes long to find.
+inline constexpr std::size_t kMostCiede2000Nodes = 256;
 
 double opacityAt(const TfCurves& curves, double x); ///< 0 without nodes
 Rgb colorAt(const TfCurves& curves, double x);      ///< white without nodes

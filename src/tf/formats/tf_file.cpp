@@ -106,7 +106,7 @@ ReadTf readTfNamed(const std::string& specOrPath) {
 TransferFunction loadTf(const std::string& specOrPath) { return readTfNamed(specOrPath).tf; }
 
 TransferFunction forVolume(const ReadTf& read, const Geometry& geometry) {
-    if (read.opensAsItIs) return read.tf;
+    if (read.opensAsItIs || !read.hasOpacities) return read.tf;
     return withOpacitiesPer(read.tf, geometry.d0() / read.length.inWorld(geometry));
 }
 

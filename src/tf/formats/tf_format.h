@@ -34,7 +34,7 @@ public:
     TfToWrite(const TransferFunction& tf, const std::optional<ValueRange>& window,
               const std::optional<Geometry>& volume, std::string name);
 
-    const TransferFunction& tf() const { return m_tf; } ///< what an eye hides is transparent in it
+    const TransferFunction& tf() const { return m_tf; } ///< as it is; points() are without what an eye hides
     const std::string& name() const { return m_name; }  ///< of a preset
     const ValueRange& range() const { return m_range; } ///< data units of x = 0 and 1
     bool hasRange() const { return m_hasRange; }

@@ -150,8 +150,8 @@ void addEightBitLosses(std::vector<std::string>& losses, const std::vector<Contr
     const auto gone = static_cast<std::size_t>(std::ranges::count_if(
         points, [](const ControlPoint& p) { return p.opacity > 0 && eightBits(p.opacity) == 0; }));
     if (gone > 0)
-        losses.push_back(numbered(gone, "opacity", "opacities") + " below 0.002 " +
-                         (gone == 1 ? "vanishes" : "vanish") + " by it");
+        losses.push_back(numbered(gone, "opacity", "opacities") + " below 0.002 " + (gone == 1 ? "becomes" : "become") +
+                         " 0");
 }
 
 void addVtkLosses(std::vector<std::string>& losses, const std::vector<ControlPoint>& points) {
@@ -170,7 +170,7 @@ void addNoDomainLoss(std::vector<std::string>& losses, const TfToWrite& tf, cons
 }
 
 std::string noDomainNotice() {
-    return "the file says of no data values: its positions 0 to 1 are taken for the ends of the intensity window";
+    return "the file gives no data range: its positions 0 to 1 are taken for the ends of the intensity window";
 }
 
 } // namespace pellucid

@@ -43,6 +43,13 @@ std::string headerText(const FramesToWrite& frames, const std::string& dataFile)
     return text;
 }
 
+/// The data of a header of its own.
+std::vector<std::string> filesBeside(const std::string& path, int) {
+    std::filesystem::path data = path;
+    if (lowerCase(data.extension().string()) == ".mha") return {};
+    return {data.replace_extension(".raw").string()};
+}
+
 void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
     const std::filesystem::path file(path);
     if (lowerCase(file.extension().string()) == ".mha")
@@ -50,8 +57,7 @@ void write(const FramesToWrite& frames, const std::string& path, const JobContro
             out.write(headerText(frames, "LOCAL"));
             writeFrames(out, frames, job);
         });
-    std::filesystem::path data = file;
-    data.replace_extension(".raw");
+    const std::filesystem::path data = filesBeside(path, frames.count).front();
     // The header is on the disk before data take the place of those that an earlier one goes with.
     writeAtomically(path, [&](OutputFile& header) {
         header.write(headerText(frames, data.filename().string()));
@@ -66,6 +72,6 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string&)
 
 } // namespace
 
-VolumeWriter metaImageWriter() { return {"MetaImage", {".mha", ".mhd"}, write, losses}; }
+VolumeWriter metaImageWriter() { return {"MetaImage", {".mha", ".mhd"}, write, losses, filesBeside}; }
 
 } // namespace pellucid

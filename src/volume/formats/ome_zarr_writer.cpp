@@ -139,15 +139,20 @@ json writeLevels(OutputFolder& folder, int frame, const FramesToWrite& frames, c
     return datasets;
 }
 
-/// Whether a folder is one of Zarr, which another one may replace.
-bool isZarr(const std::string& path) {
+/// Whether a folder is one image as it is written here, its levels and nothing else, which another one may replace.
+bool isOneImage(const std::string& path) {
+    namespace fs = std::filesystem;
     std::error_code ec;
-    return std::ranges::any_of(std::initializer_list<const char*>{".zgroup", ".zarray", "zarr.json"},
-                               [&](const char* name) { return std::filesystem::exists(path + "/" + name, ec); });
+    for (fs::directory_iterator it(path, ec), end; !ec && it != end; it.increment(ec)) {
+        const std::string name = it->path().filename().string();
+        const bool isLevel = it->is_directory(ec) && name.find_first_not_of("0123456789") == std::string::npos;
+        if (!isLevel && name != ".zattrs" && name != ".zgroup") return false;
+    }
+    return !ec && fs::exists(path + "/.zgroup", ec) && fs::exists(path + "/.zattrs", ec);
 }
 
 void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
-    writeFolderAtomically(path, isZarr, [&](OutputFolder& folder) {
+    writeFolderAtomically(path, isOneImage, [&](OutputFolder& folder) {
         json datasets;
         for (int n = 0; n < frames.count; ++n) datasets = writeLevels(folder, n, frames, frames.part(n, job));
         const json image{{"version", "0.4"}, {"axes", axesOf(frames)}, {"datasets", datasets}, {"type", "mean"}};

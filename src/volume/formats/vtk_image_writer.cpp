@@ -4,8 +4,12 @@
 #include <bit>
 #include <filesystem>
 
+#include <unistd.h>
+
 #include "base/error.h"
+#include "base/file_watch.h"
 #include "base/round_numbers.h"
+#include "base/write_errors.h"
 #include "volume/formats/writer.h"
 
 namespace pellucid {
@@ -60,36 +64,56 @@ std::string inXml(const std::string& text) {
 bool isCollection(const std::string& path) { return lowerCase(path).ends_with(".pvd"); }
 
 /// "name_007.vti" beside "name.pvd", with as many digits as the last one needs.
-std::filesystem::path fileOf(int frame, const FramesToWrite& frames, const std::filesystem::path& collection) {
+std::filesystem::path fileOf(int frame, int frames, const std::filesystem::path& collection) {
     std::string number = std::to_string(frame);
-    const std::size_t digits = std::to_string(frames.count - 1).size();
+    const std::size_t digits = std::to_string(frames - 1).size();
     number.insert(0, digits - number.size(), '0');
     return collection.parent_path() / (collection.stem().string() + "_" + number + ".vti");
 }
 
+/// Each frame under a name of its own until all are there: what had their names stays as it was if one fails.
 void write(const FramesToWrite& frames, const std::string& path, const JobControl& job) {
     if (!isCollection(path)) return writeImage(frames.frame(0, job), path, job);
-    requireWritable(path);
-    std::vector<std::filesystem::path> files;
+    struct File {
+        std::filesystem::path made, name;
+    };
+    std::vector<File> files;
+    std::string entries;
+    for (int n = 0; n < frames.count; ++n) {
+        const std::filesystem::path name = fileOf(n, frames.count, path);
+        requireWritable(name.string());
+        tellOfWriting(name.string()); // who reads one of them says so before any is replaced
+        const std::string made = ".pellucid-" + std::to_string(getpid()) + "-" + std::to_string(n) + ".vti.part";
+        files.push_back({name.parent_path() / made, name});
+        const double time = frames.frameTimes.empty() ? n : frames.frameTimes[static_cast<std::size_t>(n)];
+        entries += "<DataSet timestep=\"" + exactText(time) + "\" part=\"0\" file=\"" +
+                   inXml(name.filename().string()) + "\"/>\n";
+    }
     try {
-        std::string entries;
-        for (int n = 0; n < frames.count; ++n) {
-            const std::filesystem::path file = fileOf(n, frames, path);
-            const JobControl part = frames.part(n, job);
-            writeImage(frames.frame(n, part), file.string(), part);
-            files.push_back(file);
-            const double time = frames.frameTimes.empty() ? n : frames.frameTimes[static_cast<std::size_t>(n)];
-            entries += "<DataSet timestep=\"" + exactText(time) + "\" part=\"0\" file=\"" +
-                       inXml(file.filename().string()) + "\"/>\n";
-        }
-        writeTextAtomically(path,
-                            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n" +
-                                entries + "</Collection>\n</VTKFile>\n");
+        writeAtomically(path, [&](OutputFile& collection) {
+            collection.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n" +
+                             entries + "</Collection>\n</VTKFile>\n");
+            for (int n = 0; n < frames.count; ++n) {
+                const JobControl part = frames.part(n, job);
+                writeImage(frames.frame(n, part), files[static_cast<std::size_t>(n)].made.string(), part);
+            }
+            for (const File& file : files) {
+                std::error_code ec;
+                std::filesystem::rename(file.made, file.name, ec);
+                if (ec) throw cannotWrite(file.name.string(), ec.value());
+            }
+        });
     } catch (...) {
         std::error_code ec;
-        for (const std::filesystem::path& file : files) std::filesystem::remove(file, ec);
+        for (const File& file : files) std::filesystem::remove(file.made, ec);
         throw;
     }
+}
+
+std::vector<std::string> filesBeside(const std::string& path, int frames) {
+    std::vector<std::string> files;
+    for (int n = 0; n < frames && isCollection(path); ++n) files.push_back(fileOf(n, frames, path).string());
+    return files;
 }
 
 std::vector<std::string> losses(const FramesToWrite& frames, const std::string& path) {
@@ -106,6 +130,6 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string& 
 
 } // namespace
 
-VolumeWriter vtiWriter() { return {"VTK image data", {".vti", ".pvd"}, write, losses}; }
+VolumeWriter vtiWriter() { return {"VTK image data", {".vti", ".pvd"}, write, losses, filesBeside}; }
 
 } // namespace pellucid

@@ -42,6 +42,8 @@ struct VolumeWriter {
     /// What of where and when these are a file cannot say, each as a sentence without a full stop. Throws UsageError
     /// where the format cannot hold them at all.
     std::vector<std::string> (*losses)(const FramesToWrite& frames, const std::string& path);
+    /// Files that are written beside `path`; null: none are.
+    std::vector<std::string> (*filesBeside)(const std::string& path, int frames) = nullptr;
 };
 
 VolumeWriter nrrdWriter();
