@@ -471,7 +471,7 @@ TEST_CASE("what Zarr cannot be is said", "[zarr]") {
     write(path + "/.zarray", "{");
     CHECK_THAT(errorOf(at(path)), Contains("no JSON object"));
     // Names of chunks that lead out of the folder.
-    CHECK_THAT(with(metadata2(nullptr, "/../")), Contains("not parted by"));
+    CHECK_THAT(with(metadata2(nullptr, "/../")), Contains("not separated by"));
     // 2^30 · 2^30 · 2^4 chunks in a shard are 2^64, which 64 bits count as none.
     json shards = metadata3(json::array({{{"name", "sharding_indexed"},
                                           {"configuration",

@@ -5,6 +5,7 @@
 #include <regex>
 #include <sstream>
 
+#include "base/base64.h"
 #include "base/error.h"
 #include "image_io/image_file.h"
 #include "render/feature_pictures.h"
