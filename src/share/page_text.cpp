@@ -88,31 +88,32 @@ std::string digitsOf(std::span<const unsigned char> bytes) {
     return text;
 }
 
-std::string filled(std::string_view text, const std::function<std::string(const std::string&)>& valueOf) {
+namespace {
+
+/// Each piece from `open` to the `close` behind it becomes what `of` makes of what stands between.
+std::string replaced(std::string_view text, std::string_view open, std::string_view close,
+                     const std::function<std::string(const std::string&)>& of) {
     std::string out;
     std::size_t at = 0;
-    for (std::size_t open = text.find("{{"); open != std::string_view::npos; open = text.find("{{", at)) {
-        const std::size_t close = text.find("}}", open);
-        PELLUCID_CHECK(close != std::string_view::npos);
-        out += text.substr(at, open - at);
-        out += valueOf(std::string(text.substr(open + 2, close - open - 2)));
-        at = close + 2;
+    for (std::size_t begin = text.find(open); begin != std::string_view::npos; begin = text.find(open, at)) {
+        const std::size_t end = text.find(close, begin);
+        PELLUCID_CHECK(end != std::string_view::npos);
+        out += text.substr(at, begin - at);
+        out += of(std::string(text.substr(begin + open.size(), end - begin - open.size())));
+        at = end + close.size();
     }
     out += text.substr(at);
     return out;
 }
 
+} // namespace
+
+std::string filled(std::string_view text, const std::function<std::string(const std::string&)>& valueOf) {
+    return replaced(text, "{{", "}}", valueOf);
+}
+
 std::string webShader(std::string_view text) {
-    std::string out;
-    std::size_t at = 0;
-    for (std::size_t open = text.find("layout("); open != std::string_view::npos; open = text.find("layout(", at)) {
-        const std::size_t close = text.find(") ", open);
-        PELLUCID_CHECK(close != std::string_view::npos);
-        out += text.substr(at, open - at);
-        at = close + 2;
-    }
-    out += text.substr(at);
-    return out;
+    return replaced(text, "layout(", ") ", [](const std::string&) { return std::string(); });
 }
 
 } // namespace pellucid

@@ -2,7 +2,6 @@
 
 #include <QDir>
 #include <QFileInfo>
-#include <QMessageBox>
 
 #include "dialogs/ask_file.h"
 #include "dialogs/error_dialog.h"
@@ -88,10 +87,7 @@ void FilmController::choose() {
             continue;
         }
         const QString first = isMovie(task.path) ? chosen.path : QString::fromStdString(pictureFileOf(task.path, 0));
-        if (QFileInfo::exists(first) &&
-            QMessageBox::question(m_services.window(), tr("Save film"),
-                                  tr("%1 exists. Replace it?").arg(QFileInfo(first).fileName())) != QMessageBox::Yes)
-            continue;
+        if (!mayReplaceFile(m_services.window(), first, tr("Save film"))) continue;
         keepFolderOf("filmFolder", chosen.path);
         return save(task);
     }

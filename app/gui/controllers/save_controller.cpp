@@ -1,7 +1,6 @@
 #include "controllers/save_controller.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include <QApplication>
@@ -24,6 +23,7 @@
 #include "session/session_json.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
+#include "volume/excerpt.h"
 #include "volume/volume_writer.h"
 
 namespace pellucid::gui {
@@ -258,12 +258,9 @@ SavableVolume SaveController::described(const Savable& from) const {
     if (from.field) there.fieldName = m_fields.name();
     const Clipping& clip = *scene.session.clipping;
     if (clip.lo == Vec3(0) && clip.hi == Vec3(1)) return there;
-    VoxelRegion region;
-    for (int a = 0; a < 3; ++a) { // voxels that lie in it, wholly or in part
-        region.lo[a] = static_cast<int>(std::floor(clip.lo[a] * dims[a]));
-        region.hi[a] = std::min(dims[a], std::max(region.lo[a] + 1, static_cast<int>(std::ceil(clip.hi[a] * dims[a]))));
-    }
-    there.clipped = region;
+    Volume own = *scene.volume; // in its voxels, not those of the data that it may be an excerpt of
+    own.excerpt.reset();
+    there.clipped = regionBetween(own, clip.lo, clip.hi);
     return there;
 }
 
@@ -354,8 +351,7 @@ void SaveController::chooseImage() {
     while (dialog.exec() == QDialog::Accepted) {
         const SaveImageOptions options = dialog.options();
         if (options.path.isEmpty()) continue;
-        const QString question = tr("%1 exists. Replace it?").arg(QFileInfo(options.path).fileName());
-        if (!mayReplace(options.path, tr("Save image"), question)) continue;
+        if (!mayReplaceFile(m_services.window(), options.path, tr("Save image"))) continue;
         keepFolderOf("imageFolder", options.path);
         return saveImage(options);
     }

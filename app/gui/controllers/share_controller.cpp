@@ -5,7 +5,6 @@
 #include <QDesktopServices>
 #include <QDir>
 #include <QFileInfo>
-#include <QMessageBox>
 #include <QUrl>
 
 #include "dialogs/ask_file.h"
@@ -73,15 +72,11 @@ void ShareController::choose() {
     ShareDialog dialog(offered, estimate, m_services.window());
     while (dialog.exec() == QDialog::Accepted) {
         const ShareOptions chosen = dialog.options();
-        const QString file = QFileInfo(chosen.path).fileName();
-        if (QFileInfo::exists(chosen.path) &&
-            QMessageBox::question(m_services.window(), tr("Share as web page"),
-                                  tr("%1 exists. Replace it?").arg(file)) != QMessageBox::Yes)
-            continue;
+        if (!mayReplaceFile(m_services.window(), chosen.path, tr("Share as web page"))) continue;
         keepFolderOf("shareFolder", chosen.path);
         task.settings = chosen.settings;
         task.path = chosen.path.toStdString();
-        m_name = file;
+        m_name = QFileInfo(chosen.path).fileName();
         m_job.start(std::make_shared<const ShareTask>(task), chosen.path);
         Q_EMIT busyChanged();
         return;

@@ -2,7 +2,6 @@
 
 #include <QApplication>
 #include <QClipboard>
-#include <QMessageBox>
 
 #include "base/atomic_file.h"
 #include "controllers/open_controller.h"
@@ -70,10 +69,7 @@ void TfExchangeController::chooseExport() {
     while (dialog.exec() == QDialog::Accepted) {
         const auto [format, path] = dialog.options();
         if (path.isEmpty()) continue;
-        const QString question = tr("%1 exists. Replace it?").arg(QFileInfo(path).fileName());
-        if (QFileInfo::exists(path) &&
-            QMessageBox::question(m_services.window(), tr("Export transfer function"), question) != QMessageBox::Yes)
-            continue;
+        if (!mayReplaceFile(m_services.window(), path, tr("Export transfer function"))) continue;
         keepFolderOf("tfFolder", path);
         exportTf(*format, path);
         return;

@@ -3,6 +3,7 @@
 
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QMessageBox>
 #include <QSettings>
 
 #include "tf/formats/tf_file.h"
@@ -38,6 +39,14 @@ inline QString askSavePath(QWidget* parent, const QString& title, const QString&
     if (!path.endsWith(ending, Qt::CaseInsensitive)) path += suffix;
     keepFolderOf(key, path);
     return path;
+}
+
+/// Asks where there is such a file already; false: it is to stay.
+inline bool mayReplaceFile(QWidget* parent, const QString& path, const QString& title) {
+    const QFileInfo file(path);
+    return !file.exists() ||
+           QMessageBox::question(parent, title, QObject::tr("%1 exists. Replace it?").arg(file.fileName())) ==
+               QMessageBox::Yes;
 }
 
 /// Of the files that hold transfer functions and nothing else: "*.tf.json *.tfi …".

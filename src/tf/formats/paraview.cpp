@@ -32,10 +32,7 @@ bool knowsPreset(const ForeignFile& file) {
 ColorSpace spaceOf(const JsonValue& preset) {
     if (!preset.has("ColorSpace")) return ColorSpace::Rgb;
     const std::string space = lowerCase(preset["ColorSpace"].text());
-    if (space == "rgb") return ColorSpace::Rgb;
-    if (space == "lab" || space == "cielab") return ColorSpace::Lab;
-    if (space == "diverging") return ColorSpace::Diverging;
-    if (space == "step") return ColorSpace::Step;
+    if (const auto known = paraViewSpace(space)) return *known;
     if (space == "labciede2000") return ColorSpace::Ciede2000;
     if (space == "prolab") return ColorSpace::ProLab;
     if (space != "hsv")
@@ -75,13 +72,6 @@ TfCurves curvesOf(const JsonValue& preset) {
     return curves;
 }
 
-/// Where the points are no data values but parts of whatever the range is.
-std::optional<ValueRange> positionsOf(const TfCurves& curves) {
-    const ValueRange range = curves.range();
-    if (range == ValueRange{0, 1} || range == ValueRange{-1, 1}) return range;
-    return {};
-}
-
 ReadTf readPreset(const ForeignFile& file) {
     const PresetChoice choice = presetOf(file, isPreset);
     const JsonValue& preset = choice.preset;
@@ -89,7 +79,7 @@ ReadTf readPreset(const ForeignFile& file) {
         preset.fail("its colours are of categories, not of a range of values",
                     "give a preset with RGBPoints, or name labels by --classes");
     const TfCurves curves = curvesOf(preset);
-    const std::optional<ValueRange> positions = positionsOf(curves);
+    const std::optional<ValueRange> positions = paraViewPositions(curves);
     ReadTf read = tfOfCurves(curves, positions, file.path());
     if (positions) read.notices.push_back(noDomainNotice());
     read.length = kDefaultLength;
@@ -113,6 +103,20 @@ WrittenTf writePreset(const TfToWrite& tf) {
 }
 
 } // namespace
+
+std::optional<ColorSpace> paraViewSpace(const std::string& name) {
+    if (name == "rgb") return ColorSpace::Rgb;
+    if (name == "lab" || name == "cielab") return ColorSpace::Lab;
+    if (name == "diverging") return ColorSpace::Diverging;
+    if (name == "step") return ColorSpace::Step;
+    return {};
+}
+
+std::optional<ValueRange> paraViewPositions(const TfCurves& curves) {
+    const ValueRange range = curves.range();
+    if (range == ValueRange{0, 1} || range == ValueRange{-1, 1}) return range;
+    return {};
+}
 
 json presetOfPoints(const std::vector<ControlPoint>& points, const ValueRange& range, const std::string& name) {
     json colors = json::array(), opacities = json::array();

@@ -1,11 +1,13 @@
 // *.paraview.json, colour maps with opacities as ParaView imports them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "tf/formats/tf_curves.h"
 #include "tf/transfer_function.h"
 
 namespace pellucid {
@@ -21,5 +23,11 @@ nlohmann::json paraViewPreset(const TransferFunction& tf, const ValueRange& wind
 /// A preset of these points, each at its own x.
 nlohmann::json presetOfPoints(const std::vector<ControlPoint>& points, const ValueRange& range,
                               const std::string& name);
+
+/// The colour space that presets and older colour maps call so, in lower case, as far as both have it: without HSV,
+/// which they tell to wrap in ways of their own; empty for others.
+std::optional<ColorSpace> paraViewSpace(const std::string& name);
+/// Where the points are no data values but parts of whatever the range is.
+std::optional<ValueRange> paraViewPositions(const TfCurves& curves);
 
 } // namespace pellucid

@@ -5,6 +5,7 @@
 #include "base/round_numbers.h"
 #include "base/text.h"
 #include "tf/formats/foreign_file.h"
+#include "tf/formats/paraview_preset.h"
 #include "tf/formats/preset_choice.h"
 #include "tf/formats/read_curves.h"
 #include "tf/formats/xml_document.h"
@@ -27,12 +28,10 @@ bool knowsMaps(const ForeignFile& file) { return file.isXml() && !mapsIn(file).e
 
 ColorSpace spaceOf(const XmlDocument& xml, const XmlElement& map) {
     const std::string space = lowerCase(map.attribute("space").value());
-    if (space.empty() || space == "rgb") return ColorSpace::Rgb;
+    if (space.empty()) return ColorSpace::Rgb;
+    if (const auto known = paraViewSpace(space)) return *known;
     if (space == "hsv") return ColorSpace::Hsv;
     if (space == "wrapped") return ColorSpace::HsvWrapped;
-    if (space == "lab" || space == "cielab") return ColorSpace::Lab;
-    if (space == "diverging") return ColorSpace::Diverging;
-    if (space == "step") return ColorSpace::Step;
     xml.fail("there is no colour space " + inQuotes(space), map);
 }
 
@@ -62,10 +61,9 @@ ReadTf readMaps(const ForeignFile& file) {
     if (map.attribute("indexedLookup").as_bool())
         file.xml().fail("its colours are of categories, not of a range of values", map);
     const TfCurves curves = curvesOf(file.xml(), map);
-    const ValueRange range = curves.range();
-    const bool isPlaced = range != ValueRange{0, 1} && range != ValueRange{-1, 1};
-    ReadTf read = tfOfCurves(curves, isPlaced ? std::nullopt : std::optional(range), file.path());
-    if (!isPlaced) read.notices.push_back(noDomainNotice());
+    const std::optional<ValueRange> positions = paraViewPositions(curves);
+    ReadTf read = tfOfCurves(curves, positions, file.path());
+    if (positions) read.notices.push_back(noDomainNotice());
     read.length = {OpacityLength::Kind::ParaView, 1};
     read.notices.insert(read.notices.begin(), notices.begin(), notices.end());
     return read;

@@ -61,43 +61,53 @@ VolumeWriter nrrdWriter() {
         "NRRD", {".nrrd"}, write, [](const FramesToWrite&, const std::string&) { return std::vector<std::string>{}; }};
 }
 
-void deflateFrames(OutputFile& out, std::span<const std::byte> head, const FramesToWrite& frames,
-                   const JobControl& job) {
+struct GzipOutput::Stream {
+    z_stream zlib{};
+    std::vector<char> packed = std::vector<char>(1u << 18);
+    void put(std::span<const std::byte> bytes, int flush, OutputFile& out) {
+        // zlib does not write there.
+        zlib.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
+        zlib.avail_in = static_cast<uInt>(bytes.size());
+        do {
+            zlib.next_out = reinterpret_cast<Bytef*>(packed.data());
+            zlib.avail_out = static_cast<uInt>(packed.size());
+            deflate(&zlib, flush);
+            out.write(packed.data(), packed.size() - zlib.avail_out);
+        } while (zlib.avail_out == 0);
+    }
+};
+
+GzipOutput::GzipOutput(OutputFile& out) : m_out(out), m_stream(std::make_unique<Stream>()) {
     constexpr int kGzipFrame = 16;
     constexpr int kLevel = 3; // noise does not get smaller at higher levels, only slower
-    constexpr std::size_t kPiece = 1u << 24;
-    z_stream stream{};
-    if (deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzipFrame, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    if (deflateInit2(&m_stream->zlib, kLevel, Z_DEFLATED, MAX_WBITS + kGzipFrame, 8, Z_DEFAULT_STRATEGY) != Z_OK)
         throw std::bad_alloc();
-    const struct End {
-        z_stream& stream;
-        ~End() { deflateEnd(&stream); }
-    } end{stream};
-    std::vector<char> packed(1u << 18);
-    const auto put = [&](std::span<const std::byte> piece, int flush) {
-        // zlib does not write there.
-        stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(piece.data()));
-        stream.avail_in = static_cast<uInt>(piece.size());
-        do {
-            stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-            stream.avail_out = static_cast<uInt>(packed.size());
-            deflate(&stream, flush);
-            out.write(packed.data(), packed.size() - stream.avail_out);
-        } while (stream.avail_out == 0);
-    };
-    if (!head.empty()) put(head, Z_NO_FLUSH);
+}
+
+GzipOutput::~GzipOutput() { deflateEnd(&m_stream->zlib); }
+
+void GzipOutput::write(std::span<const std::byte> bytes, const JobControl& job) {
+    constexpr std::size_t kPiece = 1u << 24;
+    for (std::size_t done = 0; done < bytes.size();) {
+        job.throwIfStopped();
+        const auto piece = bytes.subspan(done, std::min(kPiece, bytes.size() - done));
+        m_stream->put(piece, Z_NO_FLUSH, m_out);
+        done += piece.size();
+        job.report(static_cast<double>(done) / static_cast<double>(bytes.size()));
+    }
+}
+
+void GzipOutput::finish() { m_stream->put({}, Z_FINISH, m_out); }
+
+void deflateFrames(OutputFile& out, std::span<const std::byte> head, const FramesToWrite& frames,
+                   const JobControl& job) {
+    GzipOutput gzip(out);
+    gzip.write(head, {job.stop, {}});
     for (int n = 0; n < frames.count; ++n) {
         const JobControl part = frames.part(n, job);
-        const auto bytes = sampleBytes(frames.frame(n, part));
-        for (std::size_t done = 0; done < bytes.size();) {
-            part.throwIfStopped();
-            const auto piece = bytes.subspan(done, std::min(kPiece, bytes.size() - done));
-            put(piece, Z_NO_FLUSH);
-            done += piece.size();
-            part.report(static_cast<double>(done) / static_cast<double>(bytes.size()));
-        }
+        gzip.write(sampleBytes(frames.frame(n, part)), part);
     }
-    put({}, Z_FINISH);
+    gzip.finish();
 }
 
 void writeNrrd(const Volume& volume, const std::string& path) {
@@ -108,15 +118,24 @@ void writeNrrd(const Volume& volume, const std::string& path) {
 
 void writeNrrd(const Geometry& geometry, const Grid<float>& values, const std::string& path) {
     PELLUCID_CHECK(values.dims() == geometry.dims);
-    writeNrrd(Volume(geometry, SampleArray<float>(std::vector<float>(values.begin(), values.end()))), path);
+    writeAtomically(path, [&](OutputFile& out) { // as they lie there: a volume of them would be a copy
+        out.write(headerText(geometry, SampleType::F32, "gzip"));
+        GzipOutput gzip(out);
+        gzip.write(std::as_bytes(std::span(values.data(), voxelCount(geometry.dims))), {});
+        gzip.finish();
+    });
 }
 
 std::vector<std::string> writeField(const Volume& volume, const Grid<float>& values, const std::string& path) {
+    const bool isNrrd = lowerCase(path).ends_with(".nrrd");
+    if (volume.elsewhere() == nullptr && isNrrd) {
+        writeNrrd(volume.geometry(), values, path);
+        return {};
+    }
     if (volume.elsewhere() == nullptr)
         return writeVolume(
             Volume(volume.geometry(), SampleArray<float>(std::vector<float>(values.begin(), values.end()))), path);
-    if (!lowerCase(path).ends_with(".nrrd"))
-        throw UsageError("several processes write fields as NRRD only", path, "leave the format out");
+    if (!isNrrd) throw UsageError("several processes write fields as NRRD only", path, "leave the format out");
     PELLUCID_CHECK(values.dims() == volume.dimsHere());
     const Int3 dims = volume.dims();
     const std::string header = headerText(volume.geometry(), SampleType::F32, "raw");

@@ -63,4 +63,21 @@ void writeFrames(OutputFile& out, const FramesToWrite& frames, const JobControl&
 void deflateFrames(OutputFile& out, std::span<const std::byte> head, const FramesToWrite& frames,
                    const JobControl& job);
 
+/// One gzip stream in the making.
+class GzipOutput {
+public:
+    explicit GzipOutput(OutputFile& out); ///< throws std::bad_alloc
+    ~GzipOutput();
+    GzipOutput(const GzipOutput&) = delete;
+    GzipOutput& operator=(const GzipOutput&) = delete;
+    /// In pieces, so that writing can be watched and stopped. Throws FileError, Cancelled.
+    void write(std::span<const std::byte> bytes, const JobControl& job);
+    void finish(); ///< behind the last bytes; throws FileError
+
+private:
+    struct Stream; // of zlib
+    OutputFile& m_out;
+    std::unique_ptr<Stream> m_stream;
+};
+
 } // namespace pellucid
