@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes what the commands of README.md and docs/guide.md print now into these documents: every command behind a `$`
+# Writes what the commands of README.md, docs/guide.md and docs/how-to print now into these documents: every command behind a `$`
 # whose output is shown. tests/cli/examples_test.cpp says by which rules. Then docs/texts.md, and docs/reproduce.md by `reproduce`, which
 # takes some minutes the first time. Look at `git diff` after.
 set -euo pipefail

@@ -37,7 +37,9 @@ Answer run(const Options& o, Progress& progress) {
     addOutputFile(o.out, "--out");
     refuse({{o.volume && !o.to, "only a transfer function is converted for a volume", "--volume", "add --to NAME"},
             {o.to && o.type, "a transfer function has no samples", "--type", "leave it out"},
-            {o.to && o.allFrames, "one transfer function is converted", "--all-frames", "leave it out"}});
+            {o.to && o.allFrames, "one transfer function is converted", "--all-frames", "leave it out"},
+            {o.allFrames && o.scene.volume.frame, "one frame and all frames are asked for", "--all-frames",
+             "leave out one of --frame and --all-frames"}});
     if (o.to) return convertTf({*o.to, o.volume}, o.scene, o.out, progress);
     const Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Volume& volume = *opened.scene.volume;

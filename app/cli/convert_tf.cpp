@@ -70,7 +70,10 @@ Answer convertTf(const TfConversion& conversion, const SceneOptions& options, co
               {"reference_length", writing.geometry().d0()},
               {"losses", losses}};
     if (writing.hasRange()) json["range"] = {writing.range().lo, writing.range().hi};
-    return {"wrote " + out + ": a transfer function for " + format.title + "\n", std::move(json), std::move(losses)};
+    std::vector<std::string> notices = std::move(losses);
+    if (!lowerCase(out).ends_with(format.suffix))
+        notices.push_back(std::string(format.title) + " looks for files that end in " + format.suffix);
+    return {"wrote " + out + ": a transfer function for " + format.title + "\n", std::move(json), std::move(notices)};
 }
 
 } // namespace pellucid::cli

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/text.h"
 #include "commands.h"
 #include "optimize/fields.h"
 #include "output_files.h"
@@ -38,11 +39,11 @@ struct Output {
     std::string file;
 };
 
-/// A feature's name as part of a file name, on any system.
+/// A feature's name as part of a file name, on any system: without what only steers how a text is shown.
 std::string safeName(const std::string& name) {
     constexpr std::size_t kMost = 80;
     std::string safe;
-    for (const char c : name) {
+    for (const char c : printable(name)) {
         const bool harmful =
             static_cast<unsigned char>(c) <= ' ' || std::string(R"(/\:*?"<>|)").find(c) != std::string::npos;
         safe += harmful ? '_' : c;

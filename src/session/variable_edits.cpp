@@ -316,6 +316,16 @@ std::optional<int> featureFrames(const Session& session) {
     return derivation->frames;
 }
 
+void takeTfParts(Session& session, const TransferFunction& other, const TfParts& parts, const ValueRange& window) {
+    TransferFunction now = *session.tf();
+    if (!now.range && window.lo < window.hi) now.range = window;
+    if (!now.range && !other.range) return; // constant data: no two values
+    TransferFunction made = withParts(now, other, parts);
+    if (parts.range && made.range)
+        session.variables.edit([&](std::vector<Variable>& all) { all.front().window = made.range; });
+    session.setTf(std::move(made));
+}
+
 void setFeatureFrames(Session& session, int frames) {
     if (featureFrames(session))
         session.variables.edit([frames](std::vector<Variable>& all) { all.front().derivation->frames = frames; });

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "session/session.h"
+#include "tf/formats/tf_parts.h"
 #include "volume/grid_axes.h"
 
 namespace pellucid {
@@ -63,6 +64,11 @@ void setDataSource(Session& session, const VolumeSource& source);
 void setDataAxes(Session& session, const std::optional<GridAxes>& axes);
 /// The same, of which the present data are `volume`: measures and clipping planes go along with them.
 void turnData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes);
+
+/// Colours, opacities or range of another transfer function in the place of those of the session; a range becomes the
+/// window of the variable. `window`: the present one, for a transfer function that says of no values; nothing happens
+/// where neither has a range.
+void takeTfParts(Session& session, const TransferFunction& other, const TfParts& parts, const ValueRange& window);
 
 /// Latest frames of the volatility that the features are of; empty where they are of something else.
 std::optional<int> featureFrames(const Session& session);

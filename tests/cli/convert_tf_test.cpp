@@ -86,8 +86,56 @@ TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli
     refused({"convert", "tents:2", "--to", "slicer", "--type", "u8", "--out", "b"}, 2, "no samples");
     refused({"convert", "a.tfi", "--to", "slicer", "--out", "a.tfi"}, 2, "a.tfi"); // over what it reads
     CHECK_FALSE(w.has("b"));
+    refused(Words{"convert"} + kVolume + Words{"--all-frames", "--frame", "0", "--out", "b.nrrd"}, 2,
+            "one frame and all frames");
+    CHECK_THAT(w.run({"convert", "tents:2", "--to", "slicer", "--out", "d.json"}).err,
+               Catch::Contains("end in .vp.json"));
+    CHECK_THAT(w.run({"convert", "tents:2", "--to", "slicer", "--out", "d.vp.json"}).err,
+               !Catch::Contains("end in .vp.json"));
     w.write("c.json", R"([{"Name": "c", "IndexedColors": [1, 0, 0], "Annotations": [0, "bone"]}])");
     refused({"convert", "c.json", "--to", "slicer", "--out", "b"}, 1, "categories");
+}
+
+TEST_CASE("parts of a transfer function are taken, the rest stays", "[cli][convert]") {
+    const Workshop w;
+    w.jsonAndNotes(Words{"convert", "tents:2:0.5", "--to", "pellucid", "--out", "two.tf.json"} + kForVolume);
+    const Words measure = Words{"measure"} + kVolume;
+    // Of two tents over the start that the data propose: the features are those whose opacities are taken.
+    const json opacities = w.jsonAndNotes(measure + Words{"--tf", "two.tf.json", "--tf-parts", "opacities"});
+    REQUIRE(opacities["features"].size() == 2);
+    for (const json& feature : opacities["features"])
+        CHECK(feature["opacity"].get<double>() == Approx(0.5).margin(1e-9));
+    const json start = w.jsonAndNotes(measure);
+    const json colors = w.jsonAndNotes(measure + Words{"--tf", "two.tf.json", "--tf-parts", "colors"});
+    REQUIRE(colors["features"].size() == start["features"].size());
+    for (std::size_t f = 0; f < start["features"].size(); ++f) {
+        CHECK(colors["features"][f]["name"] == start["features"][f]["name"]);
+        CHECK(colors["features"][f]["visibility"].get<double>() ==
+              Approx(start["features"][f]["visibility"].get<double>()).margin(1e-6));
+    }
+    const auto refused = [&](const Words& words, const std::string& message) {
+        const Outcome outcome = w.run(measure + words);
+        CHECK(outcome.status == 2);
+        CHECK_THAT(outcome.err, Catch::Contains(message));
+    };
+    refused({"--tf-parts", "colors"}, "there is no file to take parts of");
+    refused({"--tf", "two.tf.json", "--tf-parts", "shape"}, "no part of a transfer function");
+}
+
+TEST_CASE("opacities of another program's file are converted for an overlay, too", "[cli][convert][overlay]") {
+    const Workshop w;
+    const Words draw{"render", "sample:shells", "--sample-size", "16",  "--tf",      "tents:3:0.02",
+                     "--size", "40x40",         "--engine",      "cpu", "--overlay", "sample:disks"};
+    // The same curve as ours and as ParaView's, whose opacities hold for another length, make the same picture.
+    w.jsonAndNotes(Words{"convert", "tents:3:0.3", "--to", "pellucid", "--out", "a.tf.json"} + kForVolume);
+    w.jsonAndNotes({"convert", "a.tf.json", "--to", "paraview", "--out", "a.paraview.json", "--volume", "sample:shells",
+                    "--sample-size", "16"});
+    w.jsonAndNotes(draw + Words{"--overlay-tf", "a.tf.json", "--out", "ours.png"});
+    w.jsonAndNotes(draw + Words{"--overlay-tf", "a.paraview.json", "--out", "theirs.png"});
+    const json difference = w.json({"compare", "ours.png", "theirs.png"});
+    CHECK(difference["ssim"].get<double>() > 0.999);
+    const Outcome said = w.run(draw + Words{"--overlay-tf", "a.paraview.json", "--out", "again.png"});
+    CHECK_THAT(said.err, Catch::Contains("opacities are converted from paths of"));
 }
 
 TEST_CASE("answers are written for other programs, too", "[cli][convert]") {

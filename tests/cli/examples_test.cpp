@@ -1,4 +1,4 @@
-// The examples of the documents: every command of README and guide that stands behind a `$` in an
+// The examples of the documents: every command of README, guide and how-to pages that stands behind a `$` in an
 // indented block, run in the order of the document in a folder of its own, and what is shown below it.
 //
 // What is shown is what a terminal shows, standard error included, line by line:
@@ -216,3 +216,6 @@ TEST_CASE("examples are compared by their rules", "[cli][examples]") {
 
 TEST_CASE("README's examples are true", "[cli][examples][documents]") { runExamples("README.md"); }
 TEST_CASE("the guide's examples are true", "[cli][examples][documents]") { runExamples("docs/guide.md"); }
+TEST_CASE("the examples of how-to pages are true", "[cli][examples][documents]") {
+    for (const char* page : {"ct", "microscopy", "simulation"}) runExamples(std::string("docs/how-to/") + page + ".md");
+}

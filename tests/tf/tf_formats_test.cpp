@@ -431,6 +431,27 @@ TEST_CASE("formats are told by suffix and by content", "[tf][formats]") {
         "f.json",
         R"([{"Name": "a", "RGBPoints": [0, 0, 0, 0, 9, 1, 1, 1]}, {"Name": "b c", "RGBPoints": [5, 0, 0, 0, 7, 1, 1, 1]}])");
     CHECK(loadTf(several + "#b c").range == ValueRange{5, 7});
+    const std::string one = folder.write("g.tf.json", writtenTf(pellucidTfFormat(), {tf, {}, {}, "g"}).text);
+    CHECK_THROWS_WITH(openTfFile(one + "#g"), Contains("it holds one transfer function"));
+}
+
+TEST_CASE("what is wrong with a file that is hardly one is said of the file", "[tf][formats]") {
+    const test::TempFolder folder;
+    CHECK_THROWS_WITH(openTfFile(folder.write("a.csv", "")), Contains("the file is empty") && Contains("a.csv"));
+    CHECK_THROWS_WITH(openTfFile(folder.write("b.xml", " \n")), Contains("the file is empty"));
+    CHECK(messageOf("csv", "value,red,green,blue,opacity\n0,0,0,0,\"0\n1,1,1,1,1\n")
+              .find("a text in quotes does not end") != std::string::npos);
+    const std::string tooWide =
+        messageOf("niivue", R"({"min": -1e308, "max": 1e308, "R": [0, 1], "G": [0, 1], "B": [0, 1]})");
+    CHECK(tooWide.find("too far apart") != std::string::npos);
+    CHECK(tooWide.find("/max") != std::string::npos);
+}
+
+TEST_CASE("a preset is called as its file, without folder and suffix", "[tf][formats]") {
+    CHECK(presetNameOf("out/bone.vp.json") == "bone");
+    CHECK(presetNameOf("out/bone.tf.json") == "bone");
+    CHECK(presetNameOf("bone.json") == "bone");
+    CHECK(presetNameOf("bone") == "bone");
 }
 
 TEST_CASE("numbers are written the same in a locale with decimal commas", "[tf][formats]") {

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """How alike VTK's and Pellucid's pictures are under a transfer function that Pellucid has written for ParaView or 3D Slicer.
 
-    exchange_pictures.py PELLUCID_CLI DATA_FOLDER OUT_FOLDER
+    exchange_pictures.py PELLUCID_CLI DATA_FOLDER OUT_FOLDER [NAME…]
 
-Draws tooth, cranium and walnut by VTK's ray caster on the CPU, unlit and with one camera, and by `pellucid-cli render`, and
+Draws tooth, cranium_ct and walnut (or those that are named) by VTK's ray caster on the CPU, unlit and with one camera, and by `pellucid-cli render`, and
 prints the structural similarity (SSIM) of each pair. The outer layer of voxels is cleared in both: VTK's volume ends at
-the outer voxels' centres, Pellucid's half a voxel beyond. Needs python3-vtk9, python3-numpy and python3-skimage.
+the outer voxels' centres, Pellucid's half a voxel beyond. What is written for Voreen is opened again and drawn by
+Pellucid, and measured by the published profile, which knows Voreen's 8-bit opacities. Needs python3-vtk9, python3-numpy and python3-skimage.
 """
 import json
 import math
@@ -149,11 +150,18 @@ def camera_for(image):
             "up": [0, 0, 1], "height": 1.6 * radius}
 
 
+def published(cli, volume, tf):
+    """Each feature's visibility by the published profile."""
+    words = ["measure", volume, "--tf", tf, "--profile", "published", "--holder", "1", "--json"]
+    return [feature["visibility"] for feature in json.loads(run(cli, *words))["features"]]
+
+
 def main():
     cli, data, out = sys.argv[1:4]
+    chosen = [v for v in VOLUMES if not sys.argv[4:] or os.path.basename(v[0]).split(".")[0] in sys.argv[4:]]
     os.makedirs(out, exist_ok=True)
     worst = 1.0
-    for path, tf in VOLUMES:
+    for path, tf in chosen:
         name = os.path.basename(path).split(".")[0]
         at = lambda suffix: os.path.join(out, name + suffix)
         volume = at(".nrrd")
@@ -161,9 +169,16 @@ def main():
         camera = camera_for(image)
         json.dump(camera, open(at(".camera.json"), "w"))
         run(cli, "convert", tf, "--to", "pellucid", "--volume", volume, "--out", at(".tf.json"))
-        run(cli, "render", volume, "--tf", at(".tf.json"), "--camera", at(".camera.json"), "--size", f"{SIZE}x{SIZE}",
-            "--background", "0,0,0", "--quality", "high", "--holder", "1", "--out", at(".png"))
-        ours = imread(at(".png"))[:, :, :3]
+        def draw(tf_path, picture):
+            run(cli, "render", volume, "--tf", tf_path, "--camera", at(".camera.json"), "--size", f"{SIZE}x{SIZE}",
+                "--background", "0,0,0", "--quality", "high", "--holder", "1", "--out", picture)
+            return imread(picture)[:, :, :3]
+
+        ours = draw(at(".tf.json"), at(".png"))
+        run(cli, "convert", at(".tf.json"), "--to", "voreen", "--volume", volume, "--out", at(".tfi"))
+        ssim = structural_similarity(ours, draw(at(".tfi"), at(".voreen.png")), channel_axis=2, data_range=255)
+        worst = min(worst, ssim)
+        print(f"{name:10} voreen     SSIM {ssim:.4f}")
         for kind, suffix, read in [("paraview", ".paraview.json", from_paraview), ("slicer", ".vp.json", from_slicer),
                                    ("slicer-vp", ".vp", from_slicer_vp)]:
             run(cli, "convert", at(".tf.json"), "--to", kind, "--volume", volume, "--out", at(suffix))

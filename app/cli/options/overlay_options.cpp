@@ -53,4 +53,17 @@ void OverlayOptions::applyTo(SceneInputs& inputs) const {
     });
 }
 
+std::vector<std::string> OverlayOptions::convertTf(Scene& scene) const {
+    if (!tf || *tf == "none" || !scene.overlay) return {};
+    const ReadTf read = readTfNamed(*tf);
+    const Geometry& geometry = scene.data->geometry();
+    if (TransferFunction curve = forVolume(read, geometry); !(curve == read.tf)) {
+        scene.session.overlay.edit([&](OverlayView& view) { view.curve = std::move(curve); });
+        auto dressed = std::make_shared<SceneOverlay>(*scene.overlay);
+        dressOverlay(*dressed, *scene.session.overlay);
+        scene.overlay = std::move(dressed);
+    }
+    return openingNotices(read, geometry);
+}
+
 } // namespace pellucid::cli

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -20,6 +21,9 @@ struct OverlayOptions {
     /// --overlay replaces that of the session; the others change it. Throws UsageError where there is none, or where
     /// options do not go together, and as loadTf() does.
     void applyTo(SceneInputs& inputs) const;
+    /// --overlay-tf of another program gets the opacities that it has there, of the opened scene. What is to be said of
+    /// it.
+    std::vector<std::string> convertTf(Scene& scene) const;
 };
 
 } // namespace pellucid::cli

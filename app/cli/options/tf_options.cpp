@@ -1,10 +1,32 @@
 #include "options/tf_options.h"
 
 #include "parse.h"
+#include "session/variable_edits.h"
 #include "tf/edit.h"
+#include "tf/formats/tf_file.h"
 #include "tf/shapes.h"
 
 namespace pellucid::cli {
+
+namespace {
+
+TfParts parseParts(const std::string& text, const std::string& option) {
+    TfParts parts{false, false, false};
+    for (const std::string& word : split(text, ',')) {
+        if (word == "colors")
+            parts.colors = true;
+        else if (word == "opacities")
+            parts.opacities = true;
+        else if (word == "range")
+            parts.range = true;
+        else
+            throw UsageError("'" + word + "' is no part of a transfer function", option,
+                             "use colors, opacities or range, with commas between");
+    }
+    return parts;
+}
+
+} // namespace
 
 void TfOptions::addSource(CLI::App& app) {
     addValue(
@@ -25,6 +47,10 @@ void TfOptions::addSource(CLI::App& app) {
 
 void TfOptions::add(CLI::App& app) {
     addSource(app);
+    addValue(app, "--tf-parts", "PART[,PART]", parts, parseParts,
+             "take only these of the file of --tf: colors, opacities (with the features), range; the rest stays as in "
+             "the session, or as the data propose",
+             "Volume");
     const char* const group = "Transfer function";
     addValue(
         app, "--colormap", "NAME[,reverse][,invert][,features]",
@@ -52,6 +78,26 @@ void TfOptions::add(CLI::App& app) {
     addRepeated(app, "--hide", "NAME", hide, anyText, "close the eye of this feature: it is neither drawn nor measured",
                 group);
     addRepeated(app, "--only", "NAME", only, anyText, "close the eyes of all other features", group);
+}
+
+void TfOptions::applyTo(SceneInputs& inputs) const {
+    if (!parts) {
+        inputs.tf = spec;
+        return;
+    }
+    if (!spec || *spec == kAutomaticTf)
+        throw UsageError("there is no file to take parts of", "--tf-parts", "name one by --tf");
+    static_cast<void>(readTfNamed(*spec)); // an error in it should not wait for a large volume
+}
+
+void TfOptions::takePartsInto(Scene& scene, const MemoryUse& then, const JobControl& job) const {
+    if (!parts) return;
+    const TransferFunction other = forVolume(readTfNamed(*spec), scene.data->geometry());
+    Session session = scene.session;
+    takeTfParts(session, other, *parts, scene.volume->range());
+    const Camera camera = scene.camera;
+    scene = resolve(std::move(session), scene, then, job);
+    scene.camera = camera;
 }
 
 void TfOptions::applyTo(Scene& scene) const {

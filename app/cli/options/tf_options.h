@@ -9,11 +9,14 @@
 
 #include "session/scene.h"
 #include "tf/color_maps.h"
+#include "tf/formats/tf_parts.h"
 
 namespace pellucid::cli {
 
 struct TfOptions {
     std::optional<std::string> spec; ///< a file, auto, tents:N[:PEAK], ramp:N or preset:NAME
+
+    std::optional<TfParts> parts;    ///< what is taken of `spec`; empty: all
 
     const ColorMap* colorMap = nullptr;
     ColorMapOptions colorMapOptions;
@@ -22,7 +25,10 @@ struct TfOptions {
 
     void add(CLI::App& app);
     void addSource(CLI::App& app); ///< --tf alone
-    void applyTo(SceneInputs& inputs) const { inputs.tf = spec; }
+    /// `spec`, unless only parts of it are wanted: takePartsInto() does that. Throws UsageError for parts of nothing.
+    void applyTo(SceneInputs& inputs) const;
+    /// The parts, in the place of those of the transfer function that is open. Throws as readTfNamed() does.
+    void takePartsInto(Scene& scene, const MemoryUse& then, const JobControl& job) const;
     /// The edits, to the transfer function that is open. Throws UsageError for a name that no feature has.
     void applyTo(Scene& scene) const;
 };

@@ -60,9 +60,13 @@ void OverlayController::chooseCurve() {
 
 void OverlayController::openCurve(const QString& path) {
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
-        const TransferFunction curve = loadTf(path.toStdString());
+        const ReadTf read = readTfNamed(path.toStdString());
+        const Geometry& geometry = m_services.scene().data->geometry();
+        const TransferFunction curve = forVolume(read, geometry);
         editPart(m_services.store(), &Session::overlay, tr("Transfer function of the overlay"), {},
                  [&](OverlayView& o) { o.curve = curve; });
+        for (const std::string& notice : openingNotices(read, geometry))
+            m_services.notices().add({QString::fromStdString(notice)});
     });
 }
 

@@ -9,6 +9,7 @@
 #include "dialogs/export_tf_dialog.h"
 #include "dialogs/tf_parts_dialog.h"
 #include "services/services.h"
+#include "session/variable_edits.h"
 #include "store/edits.h"
 #include "tf/formats/tf_file.h"
 #include "tf/formats/tf_snippets.h"
@@ -91,14 +92,8 @@ void TfExchangeController::openParts(const QString& path, const TfParts& parts) 
         const Scene& scene = m_services.scene();
         const TransferFunction other = forVolume(openTfFile(path.toStdString()), scene.data->geometry());
         m_opening.editData(tr("Open parts of a transfer function"),
-                           [other, parts, range = scene.volume->range()](Session& session) {
-                               TransferFunction now = *session.tf();
-                               if (!now.range && range.lo < range.hi) now.range = range;
-                               if (!now.range && !other.range) return; // constant data: no two values
-                               TransferFunction made = withParts(now, other, parts);
-                               if (parts.range && made.range)
-                                   editVariable(session, [&](Variable& v) { v.window = made.range; });
-                               session.setTf(std::move(made));
+                           [other, parts, window = scene.volume->range()](Session& session) {
+                               takeTfParts(session, other, parts, window);
                            });
     });
 }

@@ -28,7 +28,10 @@ bool knowsTable(const ForeignFile& file) {
 }
 
 ReadTf readTable(const ForeignFile& file) {
-    const CsvRecords table = readCsv(file.text().ends_with('\n') ? file.text() : file.text() + "\n");
+    const std::string text = file.text().ends_with('\n') ? file.text() : file.text() + "\n";
+    const CsvRecords table = readCsv(text);
+    if (table.wholeBytes != text.size())
+        throw FileError("a text in quotes does not end", file.path(), "close the quotes, or leave them out");
     if (table.records.empty() || !isHead(table.records.front()))
         throw FileError("its first line is not value,red,green,blue,opacity", file.path(),
                         "write it so, and numbers with a point below");

@@ -64,6 +64,8 @@ ReadTf readNiivue(const ForeignFile& file) {
     ReadTf read = tfOfCurves(curves, ValueRange{0, 1}, file.path());
     if (!map.has("A")) read.notices.emplace_back("without opacities niivue takes 0.25, and 0 for the first node");
     const bool isPlaced = map.has("min") && map.has("max") && map["min"].number() < map["max"].number();
+    if (isPlaced && !std::isfinite(map["max"].number() - map["min"].number()))
+        map["max"].fail("min and max are too far apart");
     if (isPlaced)
         read.tf.range = ValueRange{map["min"].number(), map["max"].number()};
     else

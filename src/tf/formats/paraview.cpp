@@ -144,7 +144,8 @@ TfFormat paraViewFormat() {
             "features; opacities hold for ParaView's default unit distance",
             &knowsPreset,
             &readPreset,
-            &writePreset};
+            &writePreset,
+            true};
 }
 
 } // namespace pellucid

@@ -86,7 +86,7 @@ WrittenTf writeMap(const TfToWrite& tf) {
 TfFormat paraViewXmlFormat() {
     return {
         "paraview-xml", "ParaView colour map, older XML", ".xml", false, "opacities, features", &knowsMaps, &readMaps,
-        &writeMap};
+        &writeMap, true};
 }
 
 } // namespace pellucid

@@ -81,7 +81,7 @@ WrittenTf writePresets(const TfToWrite& tf) {
 
 TfFormat slicerXmlFormat() {
     return {"slicer-xml",  "3D Slicer presets", ".xml",       false, "features, unit distance (opacities are for 1 mm)",
-            &knowsPresets, &readPresets,        &writePresets};
+            &knowsPresets, &readPresets,        &writePresets, true};
 }
 
 } // namespace pellucid

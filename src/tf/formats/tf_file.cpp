@@ -83,7 +83,11 @@ bool isForeignTf(const std::string& path) {
 ReadTf openTfFile(const std::string& path) {
     const PartOfFile of = partOf(path);
     const ForeignFile file(of.path, readText(of.path), of.part);
-    return tfFormatOf(file).read(file);
+    const TfFormat& format = tfFormatOf(file);
+    if (!of.part.empty() && !format.holdsSeveral)
+        throw FileError("it holds one transfer function, and none that is called " + inQuotes(of.part), of.path,
+                        "leave out # and what follows it");
+    return format.read(file);
 }
 
 TransferFunction readTfFile(const std::string& path) { return openTfFile(path).tf; }
@@ -127,7 +131,7 @@ std::string presetNameOf(const std::string& path) {
     std::string name = std::filesystem::path(path).filename().string();
     for (const TfFormat& f : tfFormats())
         if (endsWith(name, f.suffix)) return name.substr(0, name.size() - std::string(f.suffix).size());
-    return name;
+    return std::filesystem::path(name).stem().string();
 }
 
 bool isWrittenForOthers(const std::string& path) {

@@ -71,6 +71,7 @@ struct TfFormat {
     bool (*knows)(const ForeignFile& file);  ///< by its content
     ReadTf (*read)(const ForeignFile& file); ///< throws Error
     WrittenTf (*write)(const TfToWrite& tf); ///< throws Error
+    bool holdsSeveral = false;               ///< its files may hold several, each with a name (FILE#NAME)
 };
 
 TfFormat pellucidTfFormat();

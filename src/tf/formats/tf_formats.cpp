@@ -90,9 +90,10 @@ const TfFormat& tfFormatOf(const ForeignFile& file) {
     for (const TfFormat& f : formats)
         if (f.ownSuffix && path.ends_with(f.suffix)) return f;
     const auto known = std::ranges::find_if(formats, [&](const TfFormat& f) { return f.knows(file); });
+    if (known == formats.end() && trimmed(file.text()).empty())
+        throw FileError("the file is empty", file.path(), "save it again in the program that it comes from");
     // What may have been meant as one of ours is told what is wrong with it.
-    if (known == formats.end() && (file.isJson() || path.ends_with(".json") || trimmed(file.text()).empty()))
-        return formats.front();
+    if (known == formats.end() && (file.isJson() || path.ends_with(".json"))) return formats.front();
     if (known == formats.end())
         throw FileError("this is no transfer function of a format that is known", file.path(),
                         "give one of " + joined(formats, ", ", &TfFormat::title));
