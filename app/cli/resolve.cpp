@@ -123,8 +123,7 @@ Opened resolve(const SceneOptions& options, Progress& progress, const Work& work
     options.tf.takePartsInto(opened.scene, inputs.then, progress.phase("loading"));
     options.clip.check(opened.scene);
     for (const std::string& notice : tfNotices(options.tf.spec, opened.scene)) opened.sessionNotices.push_back(notice);
-    for (const std::string& notice : options.overlay.convertTf(opened.scene))
-        opened.sessionNotices.push_back(notice);
+    for (const std::string& notice : options.overlay.convertTf(opened.scene)) opened.sessionNotices.push_back(notice);
     if (inputs.session.clipping->rest.isNone() && opened.scene.session.clipping->rest.density > 0 &&
         !options.clip.holder)
         opened.sessionNotices.emplace_back(

@@ -84,9 +84,15 @@ WrittenTf writeMap(const TfToWrite& tf) {
 } // namespace
 
 TfFormat paraViewXmlFormat() {
-    return {
-        "paraview-xml", "ParaView colour map, older XML", ".xml", false, "opacities, features", &knowsMaps, &readMaps,
-        &writeMap, true};
+    return {"paraview-xml",
+            "ParaView colour map, older XML",
+            ".xml",
+            false,
+            "opacities, features",
+            &knowsMaps,
+            &readMaps,
+            &writeMap,
+            true};
 }
 
 } // namespace pellucid
