@@ -4,11 +4,33 @@
 #include "base/text.h"
 #include "parse.h"
 #include "tf/formats/tf_file.h"
+#include "tf/formats/tf_snippets.h"
 #include "tf_notices.h"
 
 namespace pellucid::cli {
 
 namespace {
+
+constexpr const char* kPython = "-python";
+
+/// What a transfer function is written as: a file of a program, or lines for its console.
+struct Target {
+    const TfFormat* format = nullptr;
+    const TfSnippet* snippet = nullptr;
+
+    std::string name() const { return format != nullptr ? format->name : snippet->name + std::string(kPython); }
+    std::string title() const { return format != nullptr ? format->title : snippet->title; }
+    std::string suffix() const { return format != nullptr ? format->suffix : ".py"; }
+    WrittenTf write(const TfToWrite& tf) const {
+        return format != nullptr ? writtenTf(*format, tf) : WrittenTf{snippet->text(tf), {}};
+    }
+};
+
+Target targetNamed(const std::string& name) {
+    for (const TfSnippet& snippet : tfSnippets())
+        if (lowerCase(name) == snippet.name + std::string(kPython)) return {nullptr, &snippet};
+    return {&tfFormatNamed(name), nullptr};
+}
 
 /// A transfer function, and what it is written for.
 struct Source {
@@ -50,30 +72,32 @@ Source sourceOf(const TfConversion& conversion, const SceneOptions& options, Pro
 
 } // namespace
 
-std::string tfFormatNames() { return joined(tfFormats(), " ", &TfFormat::name); }
+std::string tfFormatNames() {
+    return joined(tfFormats(), " ", &TfFormat::name) + "; or as lines of Python: " +
+           joined(tfSnippets(), " ", [](const TfSnippet& s) { return s.name + std::string(kPython); });
+}
 
 Answer convertTf(const TfConversion& conversion, const SceneOptions& options, const std::string& out,
                  Progress& progress) {
     if (!options.volume.path) throw UsageError("no transfer function is named", "TF", "give a file, such as a.tf.json");
-    const TfFormat& format =
-        atOption("--to " + conversion.format, [&]() -> const TfFormat& { return tfFormatNamed(conversion.format); });
+    const Target target = atOption("--to " + conversion.format, [&] { return targetNamed(conversion.format); });
     const Source source = sourceOf(conversion, options, progress);
     const TfToWrite writing(source.tf, source.window, source.geometry, presetNameOf(out));
-    const WrittenTf written = writtenTf(format, writing);
+    const WrittenTf written = target.write(writing);
     writeTextAtomically(out, written.text);
     std::vector<std::string> losses = source.notices;
     addTo(losses, written.losses);
     Json json{{"command", "convert"},
               {"file", out},
-              {"to", format.name},
+              {"to", target.name()},
               {"points", source.tf.points.size()},
               {"reference_length", writing.geometry().d0()},
               {"losses", losses}};
     if (writing.hasRange()) json["range"] = {writing.range().lo, writing.range().hi};
     std::vector<std::string> notices = std::move(losses);
-    if (!lowerCase(out).ends_with(format.suffix))
-        notices.push_back(std::string(format.title) + " looks for files that end in " + format.suffix);
-    return {"wrote " + out + ": a transfer function for " + format.title + "\n", std::move(json), std::move(notices)};
+    if (!lowerCase(out).ends_with(target.suffix()))
+        notices.push_back(target.title() + " looks for files that end in " + target.suffix());
+    return {"wrote " + out + ": a transfer function for " + target.title() + "\n", std::move(json), std::move(notices)};
 }
 
 } // namespace pellucid::cli

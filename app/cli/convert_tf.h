@@ -12,11 +12,11 @@ namespace pellucid::cli {
 
 /// What `convert` was asked for besides its options for volumes.
 struct TfConversion {
-    std::string format;                ///< --to, a name of tf_format.h
+    std::string format;                ///< --to: a name of tf_format.h, or one of tf_snippets.h with "-python"
     std::optional<std::string> volume; ///< --volume: what it is converted for
 };
 
-/// "paraview, slicer, …"
+/// What --to may be, for its help.
 std::string tfFormatNames();
 
 /// The transfer function that options.volume.path names, written to `out`; the other options of the volume are those of

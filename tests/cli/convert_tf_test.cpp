@@ -68,6 +68,16 @@ TEST_CASE("every format is written and opened again", "[cli][convert]") {
     }
 }
 
+TEST_CASE("a transfer function is written as Python for other programs' consoles", "[cli][convert]") {
+    const Workshop w;
+    for (const char* name : {"paraview-python", "slicer-python", "pyvista-python", "napari-python"}) {
+        INFO(name);
+        const json told = w.jsonAndNotes(Words{"convert", "tents:2:0.5", "--to", name, "--out", "a.py"} + kForVolume);
+        CHECK(told["to"] == name);
+        CHECK_THAT(w.read("a.py"), Catch::Contains("unit_distance = 1") && Catch::Contains("points = ["));
+    }
+}
+
 TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli][convert]") {
     const Workshop w;
     const json told = w.jsonAndNotes({"convert", "tents:2", "--to", "voreen", "--out", "a.tfi"});
