@@ -35,7 +35,7 @@ TEST_CASE("a picture on the device is seen as one in memory", "[gl][vision]") {
         for (std::size_t i = 0; i < pixels.size(); i += 4) {
             const auto of = [](std::uint8_t v) { return v / 255.0; };
             const Rgb color = seenColor({of(pixels[i]), of(pixels[i + 1]), of(pixels[i + 2])}, matrix);
-            for (const auto [value, c] : {std::pair(color.r, 0), std::pair(color.g, 1), std::pair(color.b, 2)})
+            for (const auto& [value, c] : {std::pair(color.r, 0), std::pair(color.g, 1), std::pair(color.b, 2)})
                 farthest = std::max(farthest, std::abs(static_cast<int>(std::lround(255 * value)) -
                                                        seen[i + static_cast<std::size_t>(c)]));
             CHECK(seen[i + 3] == 255);

@@ -6,12 +6,10 @@
 #include <QDockWidget>
 #include <QProcess>
 #include <QPushButton>
-#include <QScrollBar>
 #include <QSettings>
 
 #include "panels/panel.h"
 #include "support/cut_texts.h"
-#include "widgets/scrolled.h"
 #include "widgets/theme.h"
 #include "window/room.h"
 
@@ -28,6 +26,10 @@ struct SeriesWindow : OpenWindow {
         source.path = "sample:vortex";
         source.sampleSize = 24;
         open(source);
+        // From far away, so that the picture, which is not what is looked at, takes no time.
+        Camera camera = document().camera();
+        camera.eye = camera.center + 8.0 * (camera.eye - camera.center);
+        document().setCamera(camera);
         settle();
     }
 };
@@ -46,8 +48,6 @@ void checkPanels() {
         CHECK(dock.isVisible());
         CHECK(cutTexts(dock).join("\n").toStdString() == "");
         CHECK(overlaps(dock).join("\n").toStdString() == "");
-        const auto& content = *static_cast<DockScroll*>(dock.widget());
-        CHECK(content.horizontalScrollBar()->maximum() == 0); // nothing is beyond the edge
     }
     QSettings().clear();
 }

@@ -98,6 +98,18 @@ TEST_CASE("the tour is walked by keys, and Esc leaves it from anywhere", "[tour]
     CHECK(Tour::wasSeen());
 }
 
+TEST_CASE("a window can be closed with the tour open", "[tour]") {
+    const UnseenAgain unseen;
+    QPointer<Tour> open;
+    {
+        OpenWindow w;
+        open = &openTour(w);
+        REQUIRE_FALSE(open.isNull());
+    }
+    CHECK(open.isNull());
+    CHECK_FALSE(Tour::wasSeen()); // nobody has left it
+}
+
 TEST_CASE("the card of the first start offers the tour until it has been seen", "[tour]") {
     const UnseenAgain unseen;
     QSettings().remove("welcomeCardSeen");

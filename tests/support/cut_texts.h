@@ -18,6 +18,7 @@
 #include <QToolButton>
 
 #include "widgets/elided.h"
+#include "widgets/fitting_row.h"
 
 namespace pellucid::gui {
 
@@ -97,11 +98,12 @@ inline RoomForText roomOfText(const QWidget& widget) {
     return {};
 }
 
-/// "densityLabel 'Density': 40 x 14 of 38 x 16" of each text in `root` that is shown and cut off.
+/// "densityLabel 'Density': 40 x 14 of 38 x 16" of each text in `root` that is shown and cut off. What its layout gives
+/// no height at all is not shown.
 inline QStringList cutTexts(const QWidget& root) {
     QStringList cut;
     for (const QWidget* widget : root.findChildren<QWidget*>()) {
-        if (!widget->isVisible()) continue;
+        if (!widget->isVisible() || widget->height() == 0 || FittingRow::isLeftOut(*widget)) continue; // not shown
         const RoomForText room = roomOfText(*widget);
         if (room.isCut())
             cut << QStringLiteral("%1 '%2': %3 x %4 of %5 x %6")
@@ -120,8 +122,9 @@ inline QStringList cutTexts(const QWidget& root) {
 inline QStringList overlaps(const QWidget& root) {
     QStringList found;
     const auto isControl = [](const QWidget* w) {
-        return w->isVisible() && (qobject_cast<const QAbstractButton*>(w) || qobject_cast<const QLabel*>(w) ||
-                                  qobject_cast<const QComboBox*>(w) || qobject_cast<const QAbstractSpinBox*>(w));
+        return w->isVisible() && !FittingRow::isLeftOut(*w) &&
+               (qobject_cast<const QAbstractButton*>(w) || qobject_cast<const QLabel*>(w) ||
+                qobject_cast<const QComboBox*>(w) || qobject_cast<const QAbstractSpinBox*>(w));
     };
     for (const QWidget* a : root.findChildren<QWidget*>())
         if (isControl(a) && a->parentWidget() != nullptr)

@@ -13,7 +13,8 @@
 //     of:NAME             the picture is of this widget alone
 //     dialog:NAME         last: the action opens a dialog, of which the picture is
 // --panels takes a picture of the window with each panel opened by its action, PREFIX-ID.png, and prints texts that are
-// cut off. --areas prints what picture, plot and bars have of the window, in logical pixels.
+// cut off; the camera is far away, so that this takes no long time. --areas prints what picture, plot and bars have of
+// the window, in logical pixels.
 #include <cstdio>
 #include <stdexcept>
 
@@ -142,6 +143,9 @@ void printAreas(MainWindow& window) {
 
 /// Of every panel, as its action shows it in a window that is arranged as at first.
 void takePanels(MainWindow& window, const QString& prefix) {
+    Camera camera = window.services().scene().camera; // from far away, so that the picture takes no time
+    camera.eye = camera.center + 8.0 * (camera.eye - camera.center);
+    window.services().store().setCamera(camera);
     for (const PanelInfo& panel : panelRegistry()) {
         window.room().reset();
         settle(window);

@@ -140,7 +140,7 @@ Tour::Tour(QMainWindow& window, Services& services)
     showStep(0);
 }
 
-Tour::~Tour() { delete m_mark; }
+Tour::~Tour() = default; // the window owns the outline, too, and may have deleted it already
 
 bool Tour::wasSeen() { return QSettings().value(kSeenKey, false).toBool(); }
 int Tour::stepCount() { return static_cast<int>(kSteps.size()); }
@@ -160,6 +160,7 @@ void Tour::leave() {
     QSettings().setValue(kSeenKey, true);
     hide();
     m_mark->hide();
+    m_mark->deleteLater();
     QWidget* const focus = m_focusBefore ? m_focusBefore.data() : m_window.findChild<QWidget*>("volumeView");
     if (focus != nullptr) focus->setFocus();
     deleteLater();
