@@ -28,6 +28,7 @@ Command addConvert(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);
 Command addFields(CLI::App& program);
+Command addColors(CLI::App& program);
 Command addDescribe(CLI::App& program);
 Command addPlot(CLI::App& program);
 Command addPropose(CLI::App& program);

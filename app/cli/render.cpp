@@ -17,10 +17,28 @@
 #include "render/ruler_marks.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "tf/color_vision.h"
 
 namespace pellucid::cli {
 
 namespace {
+
+/// Whose eyes the picture is for.
+struct SimulatedVision {
+    VisionKind vision = VisionKind::Normal;
+    double severity = 1; ///< [0,1]
+    bool operator==(const SimulatedVision&) const = default;
+};
+
+/// "deuteranopia", or "deuteranopia:0.6".
+SimulatedVision parseVision(const std::string& text, const std::string& option) {
+    const std::vector<std::string> parts = split(text, ':');
+    if (parts.size() > 2)
+        throw UsageError("'" + text + "' is not KIND or KIND:SEVERITY", option, "give such as deuteranopia:0.6");
+    SimulatedVision simulated{parseName<VisionKind>(parts[0], option)};
+    if (parts.size() == 2) simulated.severity = parseRealFrom(parts[1], option, 0, 1);
+    return simulated;
+}
 
 struct Options {
     SceneOptions scene;
@@ -28,6 +46,7 @@ struct Options {
     std::string out;
     AnnotationChoice annotate = AnnotationChoice::none();
     bool preview = false;
+    SimulatedVision vision;
 };
 
 bool isJpeg(const std::string& path) {
@@ -187,6 +206,7 @@ Answer run(const Options& o, Progress& progress) {
     }
     Drawn drawn =
         o.slice.at ? drawSlice(o, scene, picture, shown, progress) : drawView(o, scene, picture, shown, progress);
+    simulateVision(drawn.image, visionMatrix(o.vision.vision, o.vision.severity));
     progress.phase("writing");
     writeImage(drawn.image, o.out);
 
@@ -205,6 +225,8 @@ Answer run(const Options& o, Progress& progress) {
         json["slice"] = std::move(drawn.slice);
     json["seconds"] = {{"render", drawn.seconds}, {"total", total.seconds()}};
     addMapping(json, scene);
+    if (o.vision != SimulatedVision())
+        json["simulated_vision"] = {{"kind", name(o.vision.vision)}, {"severity", o.vision.severity}};
     if (shown) json["field"] = jsonFromField(scene, *shown);
     return {"wrote " + o.out + ": " + std::to_string(width) + " x " + std::to_string(height) + " pixels, " + how +
                 ", " + secondsText(drawn.seconds) + "\n",
@@ -233,6 +255,9 @@ Command addRender(CLI::App& program) {
     o->scene.coordinates.add(*app);
     app->add_flag("--preview", o->preview,
                   "draw the quick picture that the window shows while the view turns, by the cpu renderer");
+    addValue(*app, "--simulate-vision", "KIND[:S]", o->vision, parseVision,
+             "draw the picture as a viewer with a colour-vision deficiency sees it: protanopia, deuteranopia, "
+             "tritanopia or grey, of severity S from 0 to 1 (default 1); normal changes nothing");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -29,7 +29,7 @@ std::vector<Rgb> classColors(int count) {
     };
     const auto n = static_cast<std::size_t>(count);
     if (n <= kFew.size()) return kFew[n - 1];
-    static const std::vector<Rgb> kCycle = colors({"#6f97d8", "#efc265", "#b8608a", "#8fd3b0", "#d9734e", "#fbf6e6"});
+    static const std::vector<Rgb> kCycle = colors({"#6f97d8", "#efc265", "#b8608a", "#8fd3b0", "#de7752", "#fbf6e6"});
     std::vector<Rgb> result;
     for (std::size_t i = 0; i < n; ++i) result.push_back(kCycle[i % kCycle.size()]);
     return result;
@@ -38,7 +38,7 @@ std::vector<Rgb> classColors(int count) {
 std::vector<Rgb> divergingColors() { return colors({"#3a7bd5", "#8fc1ee", "#f5ab84", "#d24a43"}); }
 
 TissueColors tissueColors() {
-    const auto all = colors({"#7fa3d4", "#e8b48a", "#c04f47", "#f1e3bd", "#ffffff"});
+    const auto all = colors({"#7fa3d4", "#e8b48a", "#c04f47", "#f8e9c3", "#ffffff"});
     return {all[0], all[1], all[2], all[3], all[4]};
 }
 

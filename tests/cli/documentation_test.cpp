@@ -27,7 +27,8 @@ namespace {
 const std::vector<std::string> kCommands{
     "info",         "samples", "presets",  "generate", "convert", "render",    "measure", "fields", "propose",
     "refine",       "density", "optimize", "probe",    "rulers",  "views",     "space",   "bench",  "sequence",
-    "saliency-map", "compare", "describe", "plot",     "film",    "reproduce", "share",   "study"};
+    "saliency-map", "compare", "describe", "plot",     "film",    "reproduce", "share",   "study",
+    "colors"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
 /// What file managers and shells call.

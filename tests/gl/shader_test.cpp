@@ -52,6 +52,7 @@ TEST_CASE("every permutation of every shader compiles", "[gl]") {
             }
     const std::vector<Program> programs{{{"composite.vert", "raycast.frag"}, casts},
                                         {{"composite.vert", "composite.frag"}, {{}}},
+                                        {{"composite.vert", "vision.frag"}, {{}}},
                                         {{"composite.vert", "slices_depth.frag"}, slabs},
                                         {{"slices_gather.comp"}, layers},
                                         {{"visibility_march.comp"}, marches},

@@ -1,7 +1,8 @@
 // Pictures of the window in any state, and how its room is shared out; for the guide, and for people who change how the
 // window looks.
 //
-//     window_pictures [--size WxH] [--theme NAME] [--sample-size N] [--areas] [--out FILE.png] DOCUMENT [STEP…]
+//     window_pictures [--size WxH] [--theme NAME] [--sample-size N] [--areas] [--out FILE.png] [--panels PREFIX]
+//     DOCUMENT [STEP…]
 //
 // DOCUMENT is opened as the window opens it. A STEP is the name of an action, which is triggered, or one of
 //     click:NAME          a press on a button
@@ -11,7 +12,9 @@
 //     overlay:FILE        a second volume over the first
 //     of:NAME             the picture is of this widget alone
 //     dialog:NAME         last: the action opens a dialog, of which the picture is
-// --areas prints what picture, plot and bars have of the window, in logical pixels.
+// --panels takes a picture of the window with each panel opened by its action, PREFIX-ID.png, and prints texts that are
+// cut off; the camera is far away, so that this takes no long time. --areas prints what picture, plot and bars have of
+// the window, in logical pixels.
 #include <cstdio>
 #include <stdexcept>
 
@@ -21,6 +24,7 @@
 #include <QComboBox>
 #include <QCommandLineParser>
 #include <QDialog>
+#include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
 #include <QSettings>
@@ -31,10 +35,13 @@
 #include <QTimer>
 
 #include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "panels/target_bars.h"
+#include "support/cut_texts.h"
 #include "tf/tf_canvas.h"
 #include "widgets/theme.h"
 #include "window/main_window.h"
+#include "window/room.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -134,6 +141,24 @@ void printAreas(MainWindow& window) {
                 bars.visibleRegion().boundingRect().height(), bars.height());
 }
 
+/// Of every panel, as its action shows it in a window that is arranged as at first.
+void takePanels(MainWindow& window, const QString& prefix) {
+    Camera camera = window.services().scene().camera; // from far away, so that the picture takes no time
+    camera.eye = camera.center + 8.0 * (camera.eye - camera.center);
+    window.services().store().setCamera(camera);
+    for (const PanelInfo& panel : panelRegistry()) {
+        window.room().reset();
+        settle(window);
+        auto& dock = found<QDockWidget>(window, QString(panel.id) + "Dock");
+        if (!dock.isVisible() || dock.visibleRegion().isEmpty())
+            found<QAction>(window, QString(panel.id) + "Action").trigger();
+        settle(window);
+        save({prefix + "-" + panel.id + ".png", &window}, window);
+        for (const QString& text : cutTexts(dock) + overlaps(dock))
+            std::printf("%s: %s\n", panel.id, text.toUtf8().constData());
+    }
+}
+
 void run(const QCommandLineParser& parser) {
     const QStringList words = parser.positionalArguments();
     if (words.isEmpty()) throw std::runtime_error("name what to open");
@@ -156,6 +181,7 @@ void run(const QCommandLineParser& parser) {
         take(window, out, step);
         settle(window);
     }
+    if (parser.isSet("panels")) takePanels(window, parser.value("panels"));
     if (parser.isSet("areas")) printAreas(window);
     save(out, *out.of);
 }
@@ -175,6 +201,7 @@ int main(int argc, char** argv) {
     parser.addOption({"sample-size", "voxels along the longest axis of a sample", "N"});
     parser.addOption({"theme", "dark or light", "NAME", "dark"});
     parser.addOption({"areas", "print what picture, plot and bars have of the window"});
+    parser.addOption({"panels", "take pictures of all panels, PREFIX-ID.png", "PREFIX"});
     parser.addOption({"out", "where the picture goes", "FILE"});
     parser.addHelpOption();
     parser.process(application);

@@ -52,6 +52,7 @@ Controllers::Controllers(Services& all) : services(all) {
     player.addActions();
     adapting.addActions();
     addThemeActions(services);
+    addVisionActions(services);
     clipHandles = &addClipHandlesAction(services);
     probe.addActions();
     rulers.addActions();

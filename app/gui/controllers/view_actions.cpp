@@ -6,6 +6,7 @@
 #include "services/services.h"
 #include "store/edits.h"
 #include "store/view_edits.h"
+#include "widgets/shown_vision.h"
 
 namespace pellucid::gui {
 namespace {
@@ -52,6 +53,35 @@ constexpr PartText kParts[] = {
      QT_TR_NOOP("The distances, angles, spheres and boxes of the panel Measures, in the picture and in slices")},
 };
 static_assert(std::size(kParts) == std::size(kAnnotationParts));
+
+struct VisionText {
+    VisionKind vision;
+    const char *id, *text, *tip;
+};
+constexpr VisionText kVisions[] = {
+    {VisionKind::Normal, "visionNormalAction", QT_TR_NOOP("&Normal"), QT_TR_NOOP("The colours as they are")},
+    {VisionKind::Protanopia, "visionProtanopiaAction", QT_TR_NOOP("&Protanopia"),
+     QT_TR_NOOP("Picture and panels as somebody sees them who lacks the cones for long waves: reds are dark; about one "
+                "man in a hundred. What you save stays as it is")},
+    {VisionKind::Deuteranopia, "visionDeuteranopiaAction", QT_TR_NOOP("&Deuteranopia"),
+     QT_TR_NOOP("Picture and panels as somebody sees them who lacks the cones for middle waves: reds and greens look "
+                "alike; about one man in a hundred, and five more in part. What you save stays as it is")},
+    {VisionKind::Tritanopia, "visionTritanopiaAction", QT_TR_NOOP("&Tritanopia"),
+     QT_TR_NOOP("Picture and panels as somebody sees them who lacks the cones for short waves: blues and greens look "
+                "alike; rare. What you save stays as it is")},
+    {VisionKind::Grey, "visionGreyAction", QT_TR_NOOP("&Grey"),
+     QT_TR_NOOP("Picture and panels without colours, as in print. What you save stays as it is")},
+};
+static_assert(std::size(kVisions) == allOf<VisionKind>().size());
+
+/// What reminds of it; empty where colours are as they are.
+QString noticeOf(VisionKind vision) {
+    if (vision == VisionKind::Normal) return {};
+    if (vision == VisionKind::Grey)
+        return QObject::tr("The window is shown without colours. Pictures are saved with them.");
+    return QObject::tr("The window is shown as somebody with %1 sees it. Pictures are saved as they are.")
+        .arg(QLatin1String(name(vision)));
+}
 
 bool isOfPatient(const SessionStore& store) {
     return store.hasVolume() && store.scene().volume->geometry().worldAxes == WorldAxes::Patient;
@@ -157,6 +187,22 @@ void addThemeActions(Services& services) {
     add("themeLightAction", QObject::tr("&Light"), QObject::tr("Light panels around the picture"), Theme::Light);
     add("themeSystemAction", QObject::tr("As the &system"), QObject::tr("Dark or light, as the desktop is"),
         Theme::System);
+}
+
+void addVisionActions(Services& services) {
+    ActionMenu menu(services.actions(), QObject::tr("&View") + "/" + QObject::tr("Colour &vision"));
+    for (const VisionText& v : kVisions)
+        menu.addCheck(
+            v.id, QObject::tr(v.text), {}, QObject::tr(v.tip), [&v] { return shownVision().vision() == v.vision; },
+            [&v] { shownVision().show(v.vision); });
+    QObject::connect(&shownVision(), &ShownVision::changed, &services, [&services, said = QString()]() mutable {
+        services.notices().remove(said);
+        said = noticeOf(shownVision().vision());
+        if (!said.isEmpty())
+            services.notices().add(
+                {said, {{QObject::tr("Normal colours"), [] { shownVision().show(VisionKind::Normal); }}}});
+        services.actions().refresh();
+    });
 }
 
 } // namespace pellucid::gui

@@ -25,6 +25,7 @@
 #include "panels/variable_words.h"
 #include "services/services.h"
 #include "store/edits.h"
+#include "tf/alike_features.h"
 #include "tf/edit.h"
 #include "tf/shapes.h"
 #include "widgets/controls.h"
@@ -184,6 +185,8 @@ private:
     void showMessage();
     void showEmpty();
     void removeEmpty();
+    void showAlike();
+    void mendColors();
     void adjustTable();
 
     Services& m_services;
@@ -223,6 +226,12 @@ private:
     QToolButton* m_removeEmpty =
         named(toolButton(tr("Remove empty feature"), this), "removeEmptyButton",
               tr("Removes the feature from the curve; undo brings it back. Or move its borders to values that occur"));
+    TransferFunction m_told; ///< which features look alike has been told of it
+    ElidedLabel* m_alikeLabel = named(new ElidedLabel(this), "alikeLabel");
+    QToolButton* m_mendColors =
+        named(toolButton(tr("Mend colours"), this), "mendColorsButton",
+              tr("Other colours for as few features as possible, which all viewers can tell apart; what is lighter\n"
+                 "stays lighter. Undo takes it back. View → Colour vision shows the window as others see it"));
 };
 
 FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent)
@@ -237,16 +246,20 @@ FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidg
     m_progress->setMaximumHeight(18);
     makeFaint(*m_message);
     makeFaint(*m_emptyLabel);
+    makeFaint(*m_alikeLabel);
     m_choiceRows->setColumnStretch(1, 1);
     connect(m_removeEmpty, &QToolButton::clicked, this, &FeaturesPanel::removeEmpty);
+    connect(m_mendColors, &QToolButton::clicked, this, &FeaturesPanel::mendColors);
     auto* scroll = named(new QScrollArea(this), "barsScroll");
     scroll->setWidget(m_bars);
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
-    QLayout* const status = columnOf(
-        {m_emptyLabel, rowOf({m_removeEmpty, Cell::rest()}), m_distance, m_progress, m_message, m_choiceRows}, 4);
+    QLayout* const status =
+        columnOf({m_emptyLabel, rowOf({m_removeEmpty, Cell::rest()}), rowOf({{m_alikeLabel, 1}, m_mendColors}, 4),
+                  m_distance, m_progress, m_message, m_choiceRows},
+                 4);
     QLayout* const liveRow =
         rowOf({m_targets, actionButton(*m_controllers.live.action(), tr("Live"), "liveTargetsButton"), m_colors,
                Cell::rest(), actionButton(*m_controllers.saving.barsAction(), tr("Bars…"), "saveBarsButton")},
@@ -530,6 +543,41 @@ void FeaturesPanel::removeEmpty() {
     });
 }
 
+/// That some viewers, or all, can hardly tell two features apart by their colours.
+void FeaturesPanel::showAlike() {
+    m_mendColors->setEnabled(m_services.isEditable());
+    const Scene& scene = m_services.scene();
+    // Colours of several variables are no feature's.
+    const TransferFunction tf = scene.volume && !scene.colors ? scene.wantedTf() : TransferFunction();
+    if (tf == m_told && !m_alikeLabel->text().isEmpty() == !m_mendColors->isHidden()) return;
+    m_told = tf;
+    const std::vector<AlikePair> alike = alikeFeatures(tf, featuresToTell(tf));
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_alikeLabel, m_mendColors})
+        widget->setVisible(!alike.empty());
+    if (alike.empty()) return m_alikeLabel->clear();
+    constexpr std::size_t kMostLines = 8;
+    QStringList lines;
+    for (std::size_t i = 0; i < alike.size() && i < kMostLines; ++i)
+        lines << QString::fromStdString(alikeText(tf, alike[i]));
+    if (alike.size() > kMostLines) lines << tr("and %1 more pairs").arg(alike.size() - kMostLines);
+    const auto nameOf = [&](std::size_t feature) { return QString::fromStdString(tf.features[feature].name); };
+    m_alikeLabel->setText(tr("⚠ Alike: %1 and %2").arg(nameOf(alike[0].first), nameOf(alike[0].second)) +
+                          (alike.size() > 1 ? tr(", and others") : QString()));
+    m_alikeLabel->setToolTip(lines.join('\n'));
+    m_alikeLabel->setAccessibleName(lines.join(QStringLiteral(". ")));
+}
+
+void FeaturesPanel::mendColors() {
+    if (!m_services.isEditable()) return;
+    m_services.store().commit();
+    const Scene& scene = m_services.scene();
+    const auto mended = withColorsApart(scene.tf, featuresToTell(scene.wantedTf()));
+    if (!mended)
+        return Q_EMIT m_services.message(
+            tr("No colours were found that tell all these features apart for every viewer"));
+    editTf(m_services.store(), *mended, tr("Mend colours"));
+}
+
 void FeaturesPanel::follow() {
     const SessionStore& store = m_services.store();
     const bool ready = m_services.isEditable();
@@ -542,6 +590,7 @@ void FeaturesPanel::follow() {
         widget->setEnabled(ready);
     followSelection();
     showEmpty();
+    showAlike();
 
     const Results& results = m_services.results();
     m_distance->setEnabled(results.vwsIsCurrent());

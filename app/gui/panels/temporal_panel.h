@@ -10,6 +10,7 @@
 #include "jobs/job.h"
 #include "report/temporal_curves.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 
 namespace pellucid::gui {
 
@@ -86,7 +87,7 @@ private:
                                   tr("After missing or broken frames, compare with the frame before the gap;\n"
                                      "otherwise no flicker is reported there"));
     QLabel* m_words =
-        withAnyWidth(named(new QLabel(this), "temporalWords",
+        withAnyWidth(named(new ElidedLabel(this), "temporalWords",
                            tr("Over the frames that are known: root mean square of F, the largest F and its\n"
                               "frame, how many frames are not on target, and mean flicker")));
     QLabel* m_readOut = withAnyWidth(named(new QLabel(this), "temporalReadOut"));

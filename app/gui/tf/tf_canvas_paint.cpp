@@ -213,14 +213,16 @@ void TfCanvas::paintAxes(QPainter& painter) const {
     std::vector<double> taken; // heights of labels
     for (const double opacity : m_opacityAxis.labels()) {
         const double y = positionOf(0, opacity).y();
+        // The palette lies over what is below its upper edge.
+        const double labelY = std::min(y, strip().top() - metrics.ascent() + metrics.height() / 2);
         const bool room = std::none_of(taken.begin(), taken.end(),
-                                       [&](double other) { return std::abs(other - y) < 0.8 * metrics.height(); });
+                                       [&](double other) { return std::abs(other - labelY) < 0.8 * metrics.height(); });
         if (!room) continue;
-        taken.push_back(y);
+        taken.push_back(labelY);
         painter.setPen(QPen(translucent(theme::kLine, 0.6), 1));
         painter.drawLine(QPointF(r.left(), y), QPointF(r.right(), y));
         painter.setPen(theme::kFaint);
-        painter.drawText(QRectF(0, y - metrics.height() / 2, layout::kLeft - 6, metrics.height()),
+        painter.drawText(QRectF(0, labelY - metrics.height() / 2, layout::kLeft - 6, metrics.height()),
                          Qt::AlignRight | Qt::AlignVCenter, QString::number(opacity));
     }
     painter.drawText(QRectF(0, 1, layout::kLeft - 4, layout::kBar), Qt::AlignRight | Qt::AlignVCenter, tr("opacity"));

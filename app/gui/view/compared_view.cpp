@@ -10,6 +10,7 @@
 #include "view/cpu_surface.h"
 #include "view/gl_surface.h"
 #include "view/volume_view.h"
+#include "widgets/shown_vision.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -36,6 +37,7 @@ public:
         setObjectName("comparedOverlay");
         setAttribute(Qt::WA_TransparentForMouseEvents);
         setAttribute(Qt::WA_NoSystemBackground);
+        followShownVision(*this);
     }
     QRect seen; ///< of it
 

@@ -11,6 +11,7 @@
 
 #include "base/stopwatch.h"
 #include "render/image_renderer.h"
+#include "widgets/shown_vision.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -46,6 +47,7 @@ CpuSurface::CpuSurface(QWidget* parent)
             [this](const Task& task, Picture& picture) { show(task, picture); }, WhenBusy::StopOld, &m_lane) {
     setObjectName("cpuSurface");
     setAttribute(Qt::WA_OpaquePaintEvent);
+    followShownVision(*this);
     m_grow.setInterval(kGrowEvery);
     connect(&m_grow, &QTimer::timeout, this, &CpuSurface::takeGrown);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {

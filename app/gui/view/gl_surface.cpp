@@ -9,7 +9,9 @@
 #include <QOpenGLFunctions>
 
 #include "render/gl/gl_engines.h"
+#include "render/gl/vision_filter.h"
 #include "render/gl/volume_raycaster.h"
+#include "widgets/shown_vision.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -58,6 +60,7 @@ GlSurface::GlSurface(QWidget* parent) : QOpenGLWidget(parent) {
     setObjectName("glSurface");
     setFormat(wantedFormat());
     m_sinceShown.start();
+    connect(&shownVision(), &ShownVision::changed, this, qOverload<>(&QWidget::update));
 }
 
 GlSurface::~GlSurface() { releaseGl(); }
@@ -66,6 +69,7 @@ void GlSurface::releaseGl() {
     if (context() == nullptr) return;
     makeCurrent(); // freeing needs the context
     m_raycaster.reset();
+    m_filter.reset();
     m_picture.reset();
     m_uploaded.reset();
     doneCurrent();
@@ -151,14 +155,26 @@ void GlSurface::prepareScene() {
 }
 
 void GlSurface::paintGL() {
-    QOpenGLFunctions* gl = context()->functions();
     if (!m_picture) {
         m_picture = std::make_unique<QOpenGLFramebufferObject>(devicePixels(*this));
         m_dirty = true;
     }
     if (m_dirty) drawQuick();
+    showPicture();
+}
+
+void GlSurface::showPicture() {
     const QRect all(QPoint(0, 0), devicePixels(*this));
-    gl->glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
+    if (!shownVision().isNormal()) {
+        try {
+            if (!m_filter) m_filter = std::make_unique<gl::VisionFilter>();
+            return m_filter->draw(m_picture->texture(), all.width(), all.height(), shownVision().matrix(),
+                                  defaultFramebufferObject());
+        } catch (const Error& error) {
+            fail(error);
+        }
+    }
+    context()->functions()->glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
     QOpenGLFramebufferObject::blitFramebuffer(nullptr, all, m_picture.get(), all);
 }
 

@@ -12,8 +12,9 @@
 class QOpenGLFramebufferObject;
 
 namespace pellucid::gl {
+class VisionFilter;
 class VolumeRaycaster;
-}
+} // namespace pellucid::gl
 
 namespace pellucid::gui {
 
@@ -52,9 +53,11 @@ private:
     void refine();
     void finishPicture(const PicturePlan& plan);
     void fail(const Error& error);
+    void showPicture();
 
     PictureInput m_scene;
     std::unique_ptr<gl::VolumeRaycaster> m_raycaster;
+    std::unique_ptr<gl::VisionFilter> m_filter; ///< null as long as nobody wants other eyes
     std::shared_ptr<const Volume> m_uploaded;
     std::unique_ptr<QOpenGLFramebufferObject> m_picture;
     bool m_software = true, m_failed = false;

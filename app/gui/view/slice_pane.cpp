@@ -26,6 +26,7 @@
 #include "widgets/image_convert.h"
 #include "widgets/mark_painter.h"
 #include "widgets/number_text.h"
+#include "widgets/shown_vision.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -84,6 +85,7 @@ SlicePane::SlicePane(Services& services, const FieldController& fields, RulerCon
     m_maximize->setCursor(Qt::ArrowCursor);
     m_maximize->setFixedSize(20, 20);
     setMaximized(false);
+    followShownVision(*this);
     connect(m_maximize, &QToolButton::clicked, this, &SlicePane::maximizeWanted);
     connect(&services.store(), &SessionStore::changed, this, &SlicePane::follow);
     connect(&rulers, &RulerController::changed, this, qOverload<>(&QWidget::update));

@@ -4,6 +4,8 @@
 
 #include <QPainter>
 
+#include "widgets/shown_vision.h"
+
 namespace pellucid::gui {
 
 ViewOverlay::ViewOverlay(SessionStore& store, QWidget* view) : QWidget(view), m_store(store) {
@@ -11,6 +13,7 @@ ViewOverlay::ViewOverlay(SessionStore& store, QWidget* view) : QWidget(view), m_
     setAttribute(Qt::WA_TransparentForMouseEvents);
     setAttribute(Qt::WA_NoSystemBackground);
     setFocusPolicy(Qt::NoFocus);
+    followShownVision(*this);
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.series != after.series) cancel(); // what was taken hold of is gone
         if (m_glimpse) lookFrom(m_glimpse->camera);

@@ -33,10 +33,12 @@
 #include "widgets/layouts.h"
 #include "widgets/named.h"
 #include "widgets/scrolled.h"
+#include "widgets/shown_vision.h"
 #include "window/dock_space.h"
 #include "window/notice_bar.h"
 #include "window/room.h"
 #include "window/status_line.h"
+#include "window/tour.h"
 #include "window/welcome_card.h"
 
 namespace pellucid::gui {
@@ -144,6 +146,7 @@ void MainWindow::addPanels() {
         dock->setObjectName(QString(panel.id) + "Dock");
         dock->setTitleBarWidget(new DockTitle(*dock));
         dock->setWidget(new DockScroll(panel.make(*m_services, *m_controllers, dock), panel.area));
+        followShownVision(*dock->widget());
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
         space->watch(*dock);
@@ -221,6 +224,11 @@ void MainWindow::addHelpActions() {
                         this)
                         .exec();
                 });
+    actions.add(tr("&Help"), "tourAction", tr("&Tour"), {},
+                tr("The window in five steps, each beside the control that it is about; Esc leaves"), [this] {
+                    m_room->setFocused(false); // panels are what it is about
+                    startTour(*this, *m_services);
+                });
     actions.add(tr("&Help"), "aboutAction", tr("&About Pellucid"), {}, {}, [this] {
         QMessageBox::about(this, tr("About Pellucid"),
                            tr("<b>Pellucid %1</b><br>The volume explorer that finds the transfer function for you.")
@@ -236,6 +244,7 @@ void MainWindow::welcome() {
     auto* card = new WelcomeCard(centralWidget());
     m_row->insertWidget(0, card); // beside the picture, of which it hides nothing
     card->show();
+    connect(card, &WelcomeCard::tourWanted, findChild<QAction*>("tourAction"), &QAction::trigger);
     // Another volume: it is no sample any more, and the first thing to try has been done.
     connect(&m_services->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
         if (before.series && before.series != after.series) card->dismiss();

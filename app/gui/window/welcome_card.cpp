@@ -5,6 +5,7 @@
 
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
+#include "window/tour.h"
 
 namespace pellucid::gui {
 namespace {
@@ -29,7 +30,14 @@ WelcomeCard::WelcomeCard(QWidget* parent) : QFrame(parent) {
            "attention.</li></ul>"));
     auto* close = named(new QPushButton(tr("Got it"), this), "welcomeClose", tr("This card will not be shown again"));
     connect(close, &QPushButton::clicked, this, &WelcomeCard::dismiss);
-    setLayout(inset(columnOf({title, things, rowOf({Cell::rest(), close}), Cell::rest()}), {14, 12, 14, 12}));
+    auto* tour = named(new QPushButton(tr("Take the tour"), this), "welcomeTour",
+                       tr("The window in five steps, which you can leave; also in the menu Help"));
+    connect(tour, &QPushButton::clicked, this, [this] {
+        dismiss();
+        Q_EMIT tourWanted();
+    });
+    tour->setVisible(!Tour::wasSeen());
+    setLayout(inset(columnOf({title, things, tour, rowOf({Cell::rest(), close}), Cell::rest()}), {14, 12, 14, 12}));
     setFixedWidth(kWidth);
 }
 

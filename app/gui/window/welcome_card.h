@@ -14,6 +14,9 @@ public:
     static bool isWanted();
     /// Goes, for good.
     void dismiss();
+
+Q_SIGNALS:
+    void tourWanted(); ///< dismissed, too
 };
 
 } // namespace pellucid::gui
