@@ -16,6 +16,7 @@
 #include "tf/formats/tf_file.h"
 #include "version.h"
 #include "widgets/input_habits.h"
+#include "widgets/preferences.h"
 #include "widgets/theme.h"
 #include "window/main_window.h"
 
@@ -184,6 +185,7 @@ int showWindows(const Options& o) {
         window.show();
         if (o.screenshot.isEmpty()) {
             window.controllers().recovery.start();
+            window.watchMemory();
             if (o.onSample) window.welcome();
             if (windows.size() == 1) window.controllers().recovery.offerWhenOpen();
         } else {
@@ -240,6 +242,7 @@ int main(int argc, char** argv) {
         return complain(error.what(), kUsage);
     }
     applyTheme(application, options.theme);
+    applyPreferences(keptPreferences());
     try {
         return options.study.isEmpty() ? showWindows(options) : showStudy(options);
     } catch (const UsageError& error) {

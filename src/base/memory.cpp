@@ -112,8 +112,7 @@ std::uint64_t availableMemoryBytes(const fs::path& root) {
 }
 
 std::uint64_t availableMemoryBytes() {
-    if (const std::uint64_t limit = g_limit; limit != kUnknown)
-        return left(limit, pagesOfThisProcess().taken * pageBytes());
+    if (const std::uint64_t limit = g_limit; limit != kUnknown) return left(limit, usedMemoryBytes());
     std::uint64_t least = availableMemoryBytes(fs::path("/"));
 #if defined(__linux__)
     rlimit space{};
@@ -122,6 +121,8 @@ std::uint64_t availableMemoryBytes() {
 #endif
     return least;
 }
+
+std::uint64_t usedMemoryBytes() { return pagesOfThisProcess().taken * pageBytes(); }
 
 void setMemoryLimit(std::optional<std::uint64_t> bytes) { g_limit = bytes.value_or(kUnknown); }
 
@@ -133,7 +134,7 @@ void requireMemory(const std::string& doing, const std::string& where, std::uint
     if (limit == kUnknown)
         throw FileError(needs + describeBytes(available) + " are free", where,
                         "close other programs, use a larger machine or a smaller volume");
-    const std::uint64_t taken = pagesOfThisProcess().taken * pageBytes();
+    const std::uint64_t taken = usedMemoryBytes();
     throw FileError(needs + describeBytes(available) + " are free: the program itself takes " + describeBytes(taken) +
                         " of the " + describeBytes(limit) + " allowed",
                     where, "allow more, or use a smaller volume", Remedy::AllowMoreMemory);

@@ -16,6 +16,10 @@ std::uint64_t availableMemoryBytes();
 /// The same, from a tree of files that looks like `root`/proc and `root`/sys, without the limit on address space.
 std::uint64_t availableMemoryBytes(const std::filesystem::path& root);
 
+/// Memory that this process has taken, files that it has mapped left out, bytes; 0 where that is not known, as outside
+/// Linux.
+std::uint64_t usedMemoryBytes();
+
 /// What the whole process may use from now on, bytes, files that it has mapped left out; empty: what there is.
 void setMemoryLimit(std::optional<std::uint64_t> bytes);
 

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include <limits>
+#include <vector>
 
 #if defined(__linux__)
 #include <sys/resource.h>
@@ -108,5 +109,21 @@ TEST_CASE("the limit on address space counts", "[memory]") {
     CHECK(wide <= std::uint64_t{1} << 38);
     CHECK(narrow < std::uint64_t{3} << 30); // something is mapped already
     CHECK(narrow <= wide);
+}
+#endif
+
+#if defined(__linux__)
+TEST_CASE("memory that is taken counts as used", "[memory]") {
+    constexpr std::size_t kTaken = std::size_t{64} << 20;
+    const std::uint64_t before = usedMemoryBytes();
+    REQUIRE(before > 0);
+    const std::vector<char> taken(kTaken, 'x'); // written, so that its pages are there
+    CHECK(taken.back() == 'x');
+    const std::uint64_t after = usedMemoryBytes();
+    CHECK(after >= before + kTaken * 9 / 10);
+    CHECK(after <= before + kTaken * 2);
+    // Of a limit, what is used is gone.
+    const LimitedMemory limit(after + kTaken);
+    CHECK(availableMemoryBytes() <= kTaken * 11 / 10);
 }
 #endif

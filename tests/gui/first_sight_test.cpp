@@ -210,6 +210,7 @@ TEST_CASE("the automatic start again is for the present view, and one step", "[f
 
 TEST_CASE("the card of the first start goes for good", "[first sight]") {
     QSettings().remove("welcomeCardSeen");
+    QSettings().remove("recentFiles"); // which it offers, too
     OpenWindow w;
     const TransferFunction tf = w.document().tf();
     const QSize whole = w.view().size();

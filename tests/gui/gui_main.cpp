@@ -7,6 +7,7 @@
 
 #include <QApplication>
 #include <QSettings>
+#include <QStandardPaths>
 #include <QTemporaryDir>
 
 #include "play_study.h"
@@ -27,8 +28,12 @@ int main(int argc, char** argv) {
         return 77; // SKIP_RETURN_CODE
     }
     QApplication application(argc, argv);
-    // The settings of whoever runs the tests stay theirs.
-    const QTemporaryDir settings;
+    // The settings and the cache of whoever runs the tests stay theirs, but for the drivers' own cache.
+    const QTemporaryDir settings, cache;
+    if (qEnvironmentVariableIsEmpty("MESA_SHADER_CACHE_DIR"))
+        qputenv("MESA_SHADER_CACHE_DIR",
+                QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation).toUtf8());
+    qputenv("XDG_CACHE_HOME", cache.path().toUtf8());
     QSettings::setDefaultFormat(QSettings::IniFormat);
     QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, settings.path());
     QCoreApplication::setOrganizationName("pellucid-test");

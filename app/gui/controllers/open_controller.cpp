@@ -7,8 +7,6 @@
 #include <QMimeData>
 #include <QUrl>
 
-#include <nlohmann/json.hpp>
-
 #include "controllers/save_controller.h"
 #include "dialogs/ask_file.h"
 #include "dialogs/raw_dialog.h"
@@ -16,6 +14,7 @@
 #include "dialogs/series_dialog.h"
 #include "dialogs/series_files.h"
 #include "render/memory_needs.h"
+#include "services/recent_files.h"
 #include "services/services.h"
 #include "session/scene_data.h"
 #include "session/variable_edits.h"
@@ -28,13 +27,14 @@
 #include "volume/outside_files.h"
 #include "volume/procedural.h"
 #include "volume/series.h"
+#include "widgets/menu_icons.h"
 #include "widgets/number_text.h"
 
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRecentFiles = 8;
-constexpr auto kRecentKey = "recentFiles", kFolder = "volumeFolder";
+constexpr auto kFolder = "volumeFolder";
+constexpr QSize kMenuPicture{64, 48}; // logical pixels
 
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
@@ -45,25 +45,6 @@ VolumeSource sourceAt(const QString& path) {
     VolumeSource source;
     source.path = path.toStdString();
     return source;
-}
-
-// Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
-QString recentEntry(const VolumeSource& source) {
-    const auto absolutePath = [](const std::string& path) {
-        return QFileInfo(QString::fromStdString(path)).absoluteFilePath().toStdString();
-    };
-    VolumeSource absolute = source;
-    absolute.path = absolutePath(source.path);
-    for (std::string& path : absolute.more) path = absolutePath(path);
-    const QString path = QString::fromStdString(absolute.path);
-    if (absolute == sourceAt(path)) return path;
-    return QString::fromStdString(jsonFromSession(sessionOf(absolute), "", DataPaths::Absolute).dump());
-}
-
-VolumeSource recentSource(const QString& entry) {
-    if (!entry.startsWith('{')) return sourceAt(entry);
-    const nlohmann::json document = nlohmann::json::parse(entry.toStdString(), nullptr, false);
-    return sessionFromJson({document, "recent files"}, "").session.variable().source;
 }
 
 // What a file of another program has that is not drawn here, and what was made of its opacities.
@@ -113,6 +94,7 @@ OpenController::OpenController(Services& services, SaveController& saving)
         connect(job, &JobBase::progress, this, &OpenController::progress);
         connect(job, &JobBase::cancelled, this, &OpenController::cancelled);
     }
+    connect(&saving, &SaveController::sessionPathChanged, this, &OpenController::updateRecentFiles);
     services.showFailuresOf(m_data, tr("Cannot change the data"));
     services.showFailuresOf(m_look, tr("Cannot open the file"));
     connect(&m_open, &JobBase::failed, this, &OpenController::showFailure);
@@ -136,10 +118,11 @@ void OpenController::addActions() {
              [this] { chooseFolder(); });
     file.add("pasteAction", tr("Open from the clip&board"), "Ctrl+V",
              tr("Paths, one a line, or files that another program has copied"), [this] { openCopied(); });
-    m_clearRecent = recent.add("clearRecentAction", tr("&Clear this list"), {}, {}, [this] {
-        QSettings().remove(kRecentKey);
-        updateRecentFiles();
-    });
+    m_clearRecent = recent.add("clearRecentAction", tr("&Clear this list"), {},
+                               tr("Forgets these files, and removes their pictures"), [this] {
+                                   clearRecent();
+                                   updateRecentFiles();
+                               });
     for (const SampleInfo& sample : samples()) {
         const QString name = QString::fromStdString(sample.name);
         QString text = QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description));
@@ -267,6 +250,7 @@ void OpenController::show(const Request& request, Opened& opened) {
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
     const VolumeSource source = dataVariable(opened.scene.session).source;
+    keepRecentPicture(m_services, m_saving.sessionPath()); // of what is open until now
     m_services.store().open(std::move(opened.scene));
     if (request.unsaved) m_services.store().setUnsaved();
     m_saving.setSessionPath(request.sessionPath);
@@ -415,6 +399,7 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
 }
 
 void OpenController::openPath(const QString& path) {
+    if (path.startsWith('{')) return openRecent(path); // a recent file that needs more than its path
     if (isTf(path)) return openTf(path);
     if (isSession(path)) {
         if (m_saving.maybeSave()) openSession(path);
@@ -594,37 +579,34 @@ void OpenController::chooseTf() {
 // ---- recent files
 
 void OpenController::addRecent(const QString& entry) {
-    QSettings settings;
-    QStringList files = settings.value(kRecentKey).toStringList();
-    files.removeAll(entry);
-    files.prepend(entry);
-    while (files.size() > kRecentFiles) files.removeLast();
-    settings.setValue(kRecentKey, files);
+    noteRecent(entry);
     updateRecentFiles();
 }
 
 void OpenController::updateRecentFiles() {
     QMenu* menu = m_services.actions().menu(recentMenuName());
     if (menu == nullptr) return;
+    if (!menu->property(kMenuIconSize).isValid()) { // other windows, and the disk, change what it should show
+        menu->setProperty(kMenuIconSize, kMenuPicture);
+        connect(menu, &QMenu::aboutToShow, this, &OpenController::updateRecentFiles);
+    }
     for (QAction* action : menu->actions())
         if (action != m_clearRecent) delete action;
     menu->removeAction(m_clearRecent);
-    const QStringList files = QSettings().value(kRecentKey).toStringList();
-    for (const QString& entry : files) {
-        VolumeSource source;
-        try {
-            source = recentSource(entry);
-        } catch (const Error&) {
-            continue; // of another version
-        }
-        const QString path = QString::fromStdString(source.path);
-        QAction* action = menu->addAction(titleOf(source), this, [this, entry] { openRecent(entry); });
-        action->setToolTip(path);
-        action->setStatusTip(path);
+    const std::vector<RecentFile> files = recentFiles();
+    for (const RecentFile& file : files) {
+        const bool isThere = file.missing.isEmpty();
+        const QString name = QString(file.name).replace('&', "&&");
+        QAction* action = menu->addAction(recentIcon(file), isThere ? name : tr("%1 – missing").arg(name), this,
+                                          [this, entry = file.entry] { openRecent(entry); });
+        action->setEnabled(isThere);
+        const QString tip = isThere ? file.path : tr("%1: %2").arg(file.path, file.missing);
+        action->setToolTip(tip);
+        action->setStatusTip(tip);
     }
-    if (!files.isEmpty()) menu->addSeparator();
+    if (!files.empty()) menu->addSeparator();
     menu->addAction(m_clearRecent);
-    menu->setEnabled(!files.isEmpty());
+    menu->setEnabled(!files.empty());
 }
 
 void OpenController::openRecent(const QString& entry) {

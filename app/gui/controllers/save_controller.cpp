@@ -1,5 +1,7 @@
 #include "controllers/save_controller.h"
 
+#include "services/recent_files.h"
+
 #include <algorithm>
 #include <filesystem>
 
@@ -148,7 +150,9 @@ void SaveController::setSessionPath(const QString& path) {
 bool SaveController::saveSession(const QString& path) {
     return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the session"), [&] {
         writeSession(m_services.store().committed().session, path.toStdString());
+        noteRecent(QFileInfo(path).absoluteFilePath());
         setSessionPath(path);
+        keepRecentPicture(m_services, path);
         m_services.store().setClean();
         m_services.saySaved(path);
     });

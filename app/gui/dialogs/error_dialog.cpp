@@ -36,7 +36,7 @@ QString adviceFor(const Error& error) {
     };
     switch (error.remedy()) {
     case Remedy::AllowMoreMemory:
-        return QObject::tr("close other programs, or open a smaller volume");
+        return QObject::tr("close other programs, allow more in Edit ▸ Preferences, or open a smaller volume");
     case Remedy::GiveRawLayout:
         return orElse(QObject::tr("open it with File ▸ Open raw data and say how its bytes are laid out"));
     case Remedy::AllowOutside:

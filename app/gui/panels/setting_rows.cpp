@@ -16,6 +16,7 @@
 #include "services/services.h"
 #include "widgets/controls.h"
 #include "widgets/number_box.h"
+#include "widgets/setting_tip.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -23,7 +24,6 @@ namespace pellucid::gui {
 namespace {
 
 constexpr int kSliderSteps = 200;
-constexpr int kTipWidth = 90;                   ///< letters
 constexpr const char* kPressedAt = "pressedAt"; ///< the place of a slider when the hand took it
 
 /// A value that may be optional or not; empty: none.
@@ -63,25 +63,6 @@ std::function<void(void*)> writeOf(const Setting& setting, const RowLook& look, 
 template <class T>
 T& valueIn(const Setting& setting, const void* settings) {
     return *std::get<T*>(setting.at(const_cast<void*>(settings)));
-}
-
-/// What a setting does, with its range and unit as they are shown, in lines of a tool tip.
-QString tipOf(const Setting& setting, const RowLook& look, bool hasNumber) {
-    QString text = QString::fromUtf8(setting.help);
-    if (hasNumber) {
-        NumberRange range = setting.range;
-        range.lo *= look.factor;
-        if (range.hi < NumberRange::kFinite) range.hi *= look.factor;
-        text += QString::fromStdString(" (" + range.text()) + suffixOf(setting, look) + ")";
-    }
-    QString lines;
-    int length = 0;
-    for (const QString& word : text.split(' ')) {
-        const bool breaks = length > 0 && length + word.size() > kTipWidth;
-        lines += (lines.isEmpty() ? "" : breaks ? "\n" : " ") + word;
-        length = (breaks ? 0 : length + 1) + static_cast<int>(word.size());
-    }
-    return lines;
 }
 
 } // namespace
@@ -136,7 +117,7 @@ QWidget* SettingRows::add(const char* key, const RowLook& look) {
     }
     controls.front()->setObjectName(look.id);
     m_rows.push_back({&setting, controls.front()});
-    const QString tip = tipOf(setting, look, isNumber(kind));
+    const QString tip = settingTip(setting, isNumber(kind), suffixOf(setting, look), look.factor);
     for (QWidget* control : controls) control->setToolTip(tip);
     m_show.push_back([this, &setting, controls] {
         for (QWidget* control : controls) control->setEnabled(m_services.isEditable() && setting.isUsed(present()));

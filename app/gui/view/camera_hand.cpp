@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include <QApplication>
+#include <QLineF>
 #include <QMouseEvent>
 #include <QWheelEvent>
 #include <QWidget>
@@ -21,6 +24,14 @@ constexpr double kZoomPerNotch = 1.15;  // factor of one notch of the wheel
 constexpr double kDegreesPerKey = 5;
 constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
 
+/// Turned about the middle of the picture, which goes counterclockwise where `angle` > 0, degrees.
+Camera rolled(const Camera& camera, double angle) {
+    const double radians = angle * std::numbers::pi / 180;
+    Camera c = camera; // it turns the other way
+    c.up = std::cos(radians) * camera.trueUp() + std::sin(radians) * camera.right();
+    return c;
+}
+
 } // namespace
 
 void CameraHand::set(const std::function<Camera(const Camera&, const Geometry&)>& change, int gesture) {
@@ -36,12 +47,9 @@ void CameraHand::fit() {
 }
 
 bool CameraHand::press(const QMouseEvent& event) {
-    const bool shift = event.modifiers().testFlag(Qt::ShiftModifier);
-    m_motion = event.button() == Qt::LeftButton     ? (shift ? Motion::Pan : Motion::Rotate)
-               : event.button() == Qt::MiddleButton ? Motion::Pan
-               : event.button() == Qt::RightButton  ? Motion::Zoom
-                                                    : Motion::None;
-    if (m_motion == Motion::None) return false;
+    m_motion = motionOf(mouseScheme(), event.button(), event.modifiers());
+    if (!m_motion) return false;
+    if (m_motion == Motion::Light) m_motion = Motion::Rotate; // of what has none, or may not be changed
     m_button = event.button();
     m_last = m_pressed = event.position();
     m_moved = false;
@@ -50,28 +58,45 @@ bool CameraHand::press(const QMouseEvent& event) {
 }
 
 void CameraHand::move(const QMouseEvent& event) {
-    if (m_motion == Motion::None || m_get() == nullptr) return;
+    if (!m_motion || m_get() == nullptr) return;
     if (!m_moved && (event.position() - m_pressed).manhattanLength() < QApplication::startDragDistance() / 3) return;
     m_moved = true;
-    const QPointF way = event.position() - m_last;
-    m_last = event.position();
+    drag(std::exchange(m_last, event.position()), event.position());
+}
+
+void CameraHand::drag(const QPointF& from, const QPointF& to) {
+    const QPointF way = to - from;
     const int height = m_view.height();
     const double perPixel = 1.0 / std::max(1, height);
-    if (m_motion == Motion::Rotate) // the volume follows the hand, so the eye goes the other way
-        set(
+    switch (*m_motion) {
+    case Motion::Pan:
+        return set([&](const Camera& now, const Geometry& g) { return panned(now, g, way.x(), way.y(), height); },
+                   m_gesture);
+    case Motion::Zoom: {
+        const double closer = (zoomsInDownward(mouseScheme()) ? way.y() : -way.y()) * perPixel;
+        return zoom(std::pow(kZoomPerView, closer), m_gesture);
+    }
+    case Motion::Roll:
+        return set([&](const Camera& now, const Geometry&) { return rolled(now, turned(from, to)); }, m_gesture);
+    default: // the volume follows the hand, so the eye goes the other way
+        return set(
             [&](const Camera& now, const Geometry& g) {
                 return rotated(now, g, -way.x() * perPixel * kDegreesPerView, way.y() * perPixel * kDegreesPerView);
             },
             m_gesture);
-    if (m_motion == Motion::Pan)
-        set([&](const Camera& now, const Geometry& g) { return panned(now, g, way.x(), way.y(), height); }, m_gesture);
-    if (m_motion == Motion::Zoom) zoom(std::pow(kZoomPerView, -way.y() * perPixel), m_gesture);
+    }
+}
+
+double CameraHand::turned(const QPointF& from, const QPointF& to) const {
+    const QPointF middle = QRectF(m_view.rect()).center();
+    const double angle = QLineF(middle, from).angleTo(QLineF(middle, to)); // counterclockwise, from 0 to 360
+    return angle > 180 ? angle - 360 : angle;
 }
 
 bool CameraHand::release(const QMouseEvent& event) {
     if (event.button() != m_button) return false;
-    const bool click = m_motion == Motion::Rotate && !m_moved && m_get() != nullptr;
-    m_motion = Motion::None;
+    const bool click = m_button == Qt::LeftButton && m_motion == Motion::Rotate && !m_moved && m_get() != nullptr;
+    m_motion.reset();
     return click;
 }
 

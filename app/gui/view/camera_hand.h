@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include <QElapsedTimer>
 #include <QPointF>
 #include <Qt>
 
 #include "session/scene.h"
+#include "widgets/mouse_scheme.h"
 
 class QMouseEvent;
 class QWheelEvent;
@@ -15,7 +17,8 @@ class QWidget;
 
 namespace pellucid::gui {
 
-/// Left drag rotates, middle or Shift+left pans, wheel and right drag zoom, arrow keys rotate. It keeps no camera.
+/// Drags do what the mouse scheme says (widgets/mouse_scheme.h); the wheel zooms, arrow keys rotate. It keeps no
+/// camera.
 class CameraHand {
 public:
     using Get = std::function<const Scene*()>; ///< what is seen; null: there is nothing to turn
@@ -24,7 +27,7 @@ public:
     /// `view`: the picture, which outlives this.
     CameraHand(QWidget& view, Get get, Set set) : m_view(view), m_get(std::move(get)), m_set(std::move(set)) {}
 
-    bool isHolding() const { return m_motion != Motion::None; }
+    bool isHolding() const { return m_motion.has_value(); }
     bool press(const QMouseEvent& event); ///< false: this button does nothing
     void move(const QMouseEvent& event);
     bool release(const QMouseEvent& event); ///< true: the left button went down and up in one place
@@ -33,14 +36,15 @@ public:
     void fit();        ///< the same direction; what is drawn fills the picture
 
 private:
-    enum class Motion { None, Rotate, Pan, Zoom };
     void set(const std::function<Camera(const Camera&, const Geometry&)>& change, int gesture = 0);
     void zoom(double factor, int gesture = 0);
+    void drag(const QPointF& from, const QPointF& to);
+    double turned(const QPointF& from, const QPointF& to) const; ///< about the middle, counterclockwise, degrees
 
     QWidget& m_view;
     Get m_get;
     Set m_set;
-    Motion m_motion = Motion::None;
+    std::optional<Motion> m_motion; ///< of the drag under way
     Qt::MouseButton m_button = Qt::NoButton;
     QPointF m_last, m_pressed;
     bool m_moved = false; ///< since the press, by more than a trembling hand

@@ -7,6 +7,7 @@
 
 #include "services/services.h"
 #include "store/edits.h"
+#include "widgets/mouse_scheme.h"
 
 namespace pellucid::gui {
 namespace {
@@ -35,7 +36,7 @@ void LightLayer::paint(QPainter& painter, const LayerView& view) {
 }
 
 bool LightLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const LayerView& view) {
-    if (keys != Qt::ControlModifier || m_services.isReadOnly()) return false;
+    if (motionOf(mouseScheme(), Qt::LeftButton, keys) != Motion::Light || m_services.isReadOnly()) return false;
     m_services.store().commit();
     m_held = true;
     m_from = point;

@@ -1,5 +1,7 @@
 #include "widgets/theme.h"
 
+#include "widgets/menu_icons.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -66,6 +68,8 @@ public:
     /// Tool bars without a rim: their room is the picture's.
     int pixelMetric(PixelMetric metric, const QStyleOption* option, const QWidget* widget) const override {
         if (metric == PM_ToolBarItemMargin || metric == PM_ToolBarFrameWidth) return 0;
+        if (metric == PM_SmallIconSize && widget != nullptr)
+            if (const QSize icons = widget->property(kMenuIconSize).toSize(); icons.isValid()) return icons.width();
         return QProxyStyle::pixelMetric(metric, option, widget);
     }
 

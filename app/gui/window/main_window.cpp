@@ -19,8 +19,10 @@
 #include "dialogs/closing_buttons.h"
 #include "dialogs/command_palette.h"
 #include "dialogs/keys_dialog.h"
+#include "dialogs/preferences_dialog.h"
 #include "panels/panel.h"
 #include "panels/probe_panel.h"
+#include "services/recent_files.h"
 #include "session/caption.h"
 #include "view/annotation_layer.h"
 #include "view/clip_layer.h"
@@ -47,19 +49,34 @@ namespace {
 constexpr int kKeysWidth = 620;        // logical pixels
 constexpr double kKeysOfScreen = 0.85; // of its height
 
+/// What drags over the volume do, and all else below it: the rows in which `text` occurs.
+QString tableOfKeys(const Actions& actions, const QString& text) {
+    const QString row = QStringLiteral("<tr><td>%1&nbsp;&nbsp;</td><td>%2</td></tr>");
+    QString rows;
+    for (const MotionText& motion : motionTexts(mouseScheme()))
+        if (motion.how.contains(text, Qt::CaseInsensitive) || motion.what.contains(text, Qt::CaseInsensitive))
+            rows += row.arg(motion.how.toHtmlEscaped(), motion.what.toHtmlEscaped());
+    const QString title = QObject::tr("The view of the volume, as Edit ▸ Preferences has it");
+    if (!rows.isEmpty())
+        rows = QStringLiteral("<table cellpadding=2><tr><td colspan=2><b>%1</b></td></tr>%2</table>").arg(title, rows);
+    return rows + actions.keyTable(text);
+}
+
 /// All that mouse and keys do, as a table that can be searched: as high as the table where the screen has the room, and
 /// scrolled where it has not.
 void showKeys(const Actions& actions, QWidget* parent) {
     QDialog dialog(parent);
     dialog.setObjectName("keysBox");
     dialog.setWindowTitle(QObject::tr("Mouse and keys"));
-    auto* find = named(new QLineEdit(&dialog), "keysFind");
+    auto* find = named(new QLineEdit(&dialog), "keysFind", QObject::tr("Lists the rows that have these letters"));
+    find->setAccessibleName(QObject::tr("Find a key or what it does"));
     find->setPlaceholderText(QObject::tr("Find a key or what it does"));
     find->setClearButtonEnabled(true);
-    auto* table = named(new QTextBrowser(&dialog), "keysTable");
-    table->setHtml(actions.keyTable());
+    auto* table = named(new QTextBrowser(&dialog), "keysTable", QObject::tr("What the mouse and the keys do"));
+    table->setAccessibleName(QObject::tr("Mouse and keys"));
+    table->setHtml(tableOfKeys(actions, {}));
     QObject::connect(find, &QLineEdit::textChanged, table,
-                     [table, &actions](const QString& text) { table->setHtml(actions.keyTable(text)); });
+                     [table, &actions](const QString& text) { table->setHtml(tableOfKeys(actions, text)); });
     dialog.setLayout(columnOf({find, {table, 1}, closingButtons(dialog, QDialogButtonBox::Close)}));
     const QSize screen = dialog.screen()->availableSize();
     const QSize most(screen.width() * 9 / 10, static_cast<int>(kKeysOfScreen * screen.height()));
@@ -99,8 +116,9 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     addHelpActions();
     m_services->actions().build(*this);
     m_controllers->opening.updateRecentFiles();
-    new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, m_controllers->films,
-                   m_controllers->sharing, m_controllers->studies, *m_view, *statusBar());
+    setRecentView(*m_services, *m_view);
+    m_status = new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, m_controllers->films,
+                              m_controllers->sharing, m_controllers->studies, *m_view, *statusBar());
 
     connect(m_view, &VolumeView::pictureShown, this, [this] {
         const PictureInfo& picture = m_view->picture();
@@ -202,13 +220,13 @@ void MainWindow::togglePanel(QDockWidget& dock, const DockScroll& content) {
 void MainWindow::addHelpActions() {
     Actions& actions = m_services->actions();
     const QString volume = tr("Volume");
-    actions.addGestures({{volume, tr("Left drag, arrow keys"), tr("rotate")},
-                         {volume, tr("Middle drag, Shift + left drag"), tr("pan")},
-                         {volume, tr("Wheel, right drag, + and −"), tr("zoom")},
-                         {volume, tr("Double-click"), tr("fit")},
-                         {volume, tr("Ctrl + left drag"), tr("turn the light")},
+    actions.addGestures({{volume, tr("Double-click"), tr("fit")},
                          {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
                          {volume, tr("Esc"), tr("give up a drag")}});
+    ActionMenu edit(actions, tr("&Edit"));
+    edit.separate();
+    edit.add("preferencesAction", tr("Pre&ferences…"), "Ctrl+,",
+             tr("Theme, mouse, memory, threads and recent files of this machine"), [this] { showPreferences(); });
     actions.add(tr("&Help"), "keysAction", tr("&Mouse and keys"), "F1", {},
                 [this] { showKeys(m_services->actions(), this); });
     actions.add(tr("&Help"), "paletteAction", tr("&Do something…"), "Ctrl+K",
@@ -237,11 +255,30 @@ void MainWindow::addHelpActions() {
     actions.add(tr("&File"), "quitAction", tr("&Quit"), "Ctrl+Q", {}, [] { QApplication::closeAllWindows(); });
 }
 
+void MainWindow::showPreferences() {
+    OpenController& opening = m_controllers->opening;
+    PreferencesDialog({[this, &opening] {
+                           trimRecent();
+                           opening.updateRecentFiles();
+                           m_services->actions().refresh();
+                           m_status->followMemory();
+                       },
+                       [&opening] {
+                           clearRecent();
+                           opening.updateRecentFiles();
+                       },
+                       [] { return !recentFiles().empty(); }},
+                      this)
+        .exec();
+}
+
+void MainWindow::watchMemory() { m_status->watchMemory(); }
+
 void MainWindow::restoreLayout() { m_room->restore(); }
 
 void MainWindow::welcome() {
-    if (!WelcomeCard::isWanted()) return;
-    auto* card = new WelcomeCard(centralWidget());
+    if (!WelcomeCard::hasSomething()) return;
+    auto* card = new WelcomeCard(m_controllers->opening, centralWidget());
     m_row->insertWidget(0, card); // beside the picture, of which it hides nothing
     card->show();
     connect(card, &WelcomeCard::tourWanted, findChild<QAction*>("tourAction"), &QAction::trigger);
@@ -284,6 +321,7 @@ void MainWindow::showEvent(QShowEvent* event) {
 void MainWindow::closeEvent(QCloseEvent* event) {
     m_controllers->optimizing.cancel();
     if (!m_controllers->saving.maybeSave()) return event->ignore();
+    keepRecentPicture(*m_services, m_controllers->saving.sessionPath());
     m_controllers->recovery.discard();
     m_controllers->opening.cancel();
     m_controllers->saving.cancel();

@@ -15,6 +15,7 @@ namespace pellucid::gui {
 
 class DockScroll;
 class Room;
+class StatusLine;
 struct PanelInfo;
 struct Controllers;
 
@@ -34,6 +35,8 @@ public:
     Room& room() { return *m_room; }
     /// A card beside the picture, if nobody has dismissed it: for a start on a sample.
     void welcome();
+    /// The status line says how much memory is in use, which no two runs have alike.
+    void watchMemory();
     /// The picture is as good as it gets, the figures are of the present state, and nothing is under way.
     bool isSettled() const;
 
@@ -52,6 +55,7 @@ private:
     void addPanelActions(const std::vector<PanelInfo>& panels);
     void togglePanel(QDockWidget& dock, const DockScroll& content);
     void addHelpActions();
+    void showPreferences();
     void updateTitle();
     void describePicture(); ///< to those who hear the window in place of seeing it
 
@@ -61,6 +65,7 @@ private:
     ViewGrid* m_views;  // with m_view in it
     QHBoxLayout* m_row; // with m_views in it
     Room* m_room;
+    StatusLine* m_status;
 };
 
 } // namespace pellucid::gui

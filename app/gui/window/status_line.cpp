@@ -2,6 +2,7 @@
 
 #include <QStatusBar>
 
+#include "base/memory.h"
 #include "controllers/film_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
@@ -18,7 +19,8 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kMessageTime = 8000; // milliseconds
+constexpr int kMessageTime = 8000, kMemoryTime = 2000; // milliseconds
+constexpr double kMostMemory = 1e6;                    // GiB: what is more stands for "not known"
 
 } // namespace
 
@@ -31,7 +33,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
                         "volume fits): what pellucid-cli takes as --view"))),
       m_renderer(named(new QLabel(&bar), "rendererLabel")), m_engine(named(new QLabel(&bar), "engineLabel")),
       m_background(named(new QLabel(&bar), "backgroundLabel")), m_hint(named(new QLabel(&bar), "hintLabel")),
-      m_progress(progressBar("backgroundProgress", &bar)),
+      m_memory(named(new QLabel(&bar), "memoryLabel")), m_progress(progressBar("backgroundProgress", &bar)),
       m_cancel(named(toolButton(tr("Cancel"), &bar), "backgroundCancel")) {
     m_progress->setMaximumSize(160, 14);
     m_cancel->setMaximumHeight(bar.fontMetrics().height()); // no higher than the texts
@@ -44,7 +46,9 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     bar.addWidget(m_background);
     bar.addWidget(m_progress);
     bar.addWidget(m_cancel);
-    for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
+    for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine, m_memory}) bar.addPermanentWidget(label);
+    m_memory->hide();
+    connect(&m_watch, &QTimer::timeout, this, &StatusLine::followMemory);
 
     connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &films, &sharing, &studies] {
         opening.cancel();
@@ -137,6 +141,24 @@ void StatusLine::followFigures() {
                       : state == Results::State::Current   ? tr("measured")
                       : state == Results::State::Failed    ? tr("not measured")
                                                            : QString());
+}
+
+void StatusLine::watchMemory() {
+    m_memory->show();
+    followMemory();
+    m_watch.start(kMemoryTime);
+}
+
+void StatusLine::followMemory() {
+    constexpr double kGiB = 1u << 30;
+    const double used = static_cast<double>(usedMemoryBytes()) / kGiB,
+                 free = static_cast<double>(availableMemoryBytes()) / kGiB;
+    const bool knowsFree = free < kMostMemory;
+    const QString taken = QString::number(used, 'f', 1);
+    m_memory->setText(knowsFree ? tr("%1 of %2 GiB").arg(taken, QString::number(used + free, 'f', 1))
+                                : tr("%1 GiB").arg(taken));
+    m_memory->setToolTip(tr("Memory that the program has taken, of what it may take: what is free now, or the limit\n"
+                            "of Edit ▸ Preferences, in GiB. Files that are only looked into do not count."));
 }
 
 void StatusLine::followBackground() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QObject>
+#include <QTimer>
 
 class QLabel;
 class QProgressBar;
@@ -24,6 +25,10 @@ public:
     StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
                ShareController& sharing, StudyController& studies, VolumeView& view, QStatusBar& bar);
 
+    /// Says how much memory is in use, from now on.
+    void watchMemory();
+    void followMemory();
+
 private:
     void followScene();
     void followView();
@@ -38,9 +43,10 @@ private:
     StudyController& m_studies;
     VolumeView& m_view;
     QStatusBar& m_bar;
-    QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background, *m_hint;
+    QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background, *m_hint, *m_memory;
     QProgressBar* m_progress;
     QToolButton* m_cancel;
+    QTimer m_watch;
 };
 
 } // namespace pellucid::gui
