@@ -14,7 +14,8 @@ std::vector<Command> addCommands(CLI::App& program) {
         addMeasure(program),  addFields(program),  addRefine(program),      addOptimize(program), addDensity(program),
         addSequence(program), addSpace(program),   addPlot(program),        addPropose(program),  addProbe(program),
         addRulers(program),   addViews(program),   addSaliencyMap(program), addCompare(program),  addReproduce(program),
-        addBench(program),    addFilm(program),    addConvert(program),     addDescribe(program), addShare(program)};
+        addBench(program),    addFilm(program),    addConvert(program),     addDescribe(program), addShare(program),
+        addFigure(program)};
     std::ranges::move(addStudy(program), std::back_inserter(commands));
     commands.push_back(addThumbnail(program));
     commands.push_back(addCompletions(program));
