@@ -155,7 +155,7 @@ private:
         const bool shares = m_parts.legend && m_in.rows.front().vws.has_value();
         const double number = 4.2 * m_em, gap = 1.2 * m_em;
         const double numbers = (m_parts.legend ? number : 0) + (shares ? number : 0);
-        const double leastBars = bars ? (hasTargets() ? 0.42 : 0.32) * m_width : 0; // the key has room
+        const double leastBars = bars ? std::clamp(keyWidth(), 0.3 * m_width, 0.5 * m_width) : 0;
         const double room = m_width - columns.name - numbers - (bars ? gap + leastBars : 0);
         columns.nameWidth = std::max(2 * m_em, std::min(names, room));
         double x = bars ? columns.name + columns.nameWidth + 0.1 * m_em : m_width - numbers;
@@ -169,6 +169,13 @@ private:
 
     double barX(const Columns& columns, double share) const {
         return columns.bars + (columns.barsEnd - columns.bars) * std::clamp(share / columns.most, 0.0, 1.0);
+    }
+    /// Of what addKey() says.
+    double keyWidth() const {
+        const double each = 2.7 * m_em; // sample, and room around it
+        double width = 2 * each + widthOf("Saliency", kSmall) + widthOf("Visibility", kSmall);
+        if (hasTargets()) width += each + widthOf("Target", kSmall);
+        return width - 1.1 * m_em; // none behind the last
     }
     bool hasTargets() const {
         return std::ranges::any_of(m_in.rows, [](const FigureRow& row) { return row.target.has_value(); });
@@ -198,7 +205,7 @@ private:
         };
         say("Feature", columns.name, Align::Start);
         if (columns.opacity) say("Opacity", *columns.opacity, Align::End);
-        if (columns.shares) say("VWS", *columns.shares, Align::End);
+        if (columns.shares) say("Saliency", *columns.shares, Align::End);
         if (bars) addKey(head, columns, baseline);
         m_y += row;
     }
@@ -217,7 +224,7 @@ private:
             x += sample + wide + 1.2 * m_em;
         };
         const double bar = 1.1 * m_em;
-        add("VWS", bar, boxOf({x, middle - 0.28 * m_em, x + bar, middle + 0.28 * m_em}, kRule));
+        add("Saliency", bar, boxOf({x, middle - 0.28 * m_em, x + bar, middle + 0.28 * m_em}, kRule));
         add("Visibility", bar, boxOf({x, middle - 0.09 * m_em, x + bar, middle + 0.09 * m_em}, kThinBar));
         if (hasTargets())
             add("Target", 0.2 * m_em,
@@ -232,7 +239,7 @@ private:
 
     static std::string labelOf(const FigureRow& row) {
         std::string text = row.name + ": opacity " + shortText(row.opacity);
-        if (row.vws) text += ", " + percentText(*row.vws) + " of the saliency (VWS)";
+        if (row.vws) text += ", " + percentText(*row.vws) + " of the saliency";
         if (row.visibility) text += ", " + percentText(*row.visibility) + " of what is visible";
         if (row.target) text += ", target " + percentText(*row.target);
         return text;

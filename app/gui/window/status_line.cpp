@@ -2,6 +2,7 @@
 
 #include <QStatusBar>
 
+#include "controllers/figure_controller.h"
 #include "controllers/film_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
@@ -22,10 +23,12 @@ constexpr int kMessageTime = 8000; // milliseconds
 
 } // namespace
 
-StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
-                       ShareController& sharing, StudyController& studies, VolumeView& view, QStatusBar& bar)
-    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_films(films), m_sharing(sharing),
-      m_studies(studies), m_view(view), m_bar(bar), m_volume(named(new QLabel(&bar), "volumeLabel")),
+StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, FigureController& figures,
+                       FilmController& films, ShareController& sharing, StudyController& studies, VolumeView& view,
+                       QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_figures(figures), m_films(films),
+      m_sharing(sharing), m_studies(studies), m_view(view), m_bar(bar),
+      m_volume(named(new QLabel(&bar), "volumeLabel")),
       m_camera(named(new QLabel(&bar), "cameraLabel",
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
@@ -46,9 +49,10 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     bar.addWidget(m_cancel);
     for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
 
-    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &films, &sharing, &studies] {
+    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &figures, &films, &sharing, &studies] {
         opening.cancel();
         saving.cancel();
+        figures.cancel();
         films.cancel();
         sharing.cancel();
         studies.cancel();
@@ -65,6 +69,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     };
     watch(opening);
     watch(saving);
+    watch(figures);
     watch(films);
     watch(sharing);
     watch(studies);
@@ -140,11 +145,12 @@ void StatusLine::followFigures() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), filming = m_films.isBusy(),
-               sharing = m_sharing.isBusy();
-    const bool busy = opening || saving || filming || sharing || m_studies.isBusy();
+    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), drawing = m_figures.isBusy(),
+               filming = m_films.isBusy(), sharing = m_sharing.isBusy();
+    const bool busy = opening || saving || drawing || filming || sharing || m_studies.isBusy();
     const QString text = opening   ? m_opening.busyText()
                          : saving  ? m_saving.busyText()
+                         : drawing ? m_figures.busyText()
                          : filming ? m_films.busyText()
                          : sharing ? m_sharing.busyText()
                                    : m_studies.busyText();

@@ -12,6 +12,7 @@ namespace pellucid::gui {
 
 class VolumeView;
 class OpenController;
+class FigureController;
 class FilmController;
 class SaveController;
 class Services;
@@ -21,8 +22,9 @@ class StudyController;
 class StatusLine : public QObject {
     Q_OBJECT
 public:
-    StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
-               ShareController& sharing, StudyController& studies, VolumeView& view, QStatusBar& bar);
+    StatusLine(Services& services, OpenController& opening, SaveController& saving, FigureController& figures,
+               FilmController& films, ShareController& sharing, StudyController& studies, VolumeView& view,
+               QStatusBar& bar);
 
 private:
     void followScene();
@@ -33,6 +35,7 @@ private:
     Services& m_services;
     OpenController& m_opening;
     SaveController& m_saving;
+    FigureController& m_figures;
     FilmController& m_films;
     ShareController& m_sharing;
     StudyController& m_studies;
