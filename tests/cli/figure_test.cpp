@@ -41,7 +41,7 @@ TEST_CASE("figure writes PDF and SVG with the shares that measure tells", "[cli]
 TEST_CASE("figures that cannot be made are refused in words", "[cli][figure]") {
     const Workshop w;
     const auto refused = [&](const Words& options, const std::string& word) {
-        const Outcome outcome = w.run(kSmall + options);
+        const Outcome outcome = w.run(Words{"figure"} + kScene + options);
         INFO(outcome.err);
         CHECK(outcome.status == 2);
         CHECK(outcome.err.find(word) != std::string::npos);
