@@ -60,12 +60,13 @@ Qt. It writes pictures as PNG files.")
 set(CPACK_DEBIAN_IMAGES_PACKAGE_NAME pellucid-images)
 set(CPACK_DEBIAN_IMAGES_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_IMAGES_PACKAGE_DEPENDS "pellucid-cli ${same_version}")
+set(CPACK_DEBIAN_IMAGES_PACKAGE_RECOMMENDS "fonts-liberation | fonts-dejavu-core")
 set(CPACK_DEBIAN_IMAGES_DESCRIPTION "volume explorer, pictures of many kinds
 Reads pictures, writes them as EXR, TIFF and JPEG, and opens folders of PNG,
-JPEG and BMP files as volumes.
+JPEG and BMP files as volumes. Makes figures for print, as SVG and PDF.
 .
-This package has what needs OpenImageIO, which brings 200 libraries along,
-those of X11 among them.")
+This package has what needs OpenImageIO and Pango, which bring 200 libraries
+along, those of X11 among them.")
 
 set(CPACK_DEBIAN_GUI_PACKAGE_NAME pellucid)
 set(CPACK_DEBIAN_GUI_PACKAGE_SECTION graphics)

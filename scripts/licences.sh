@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 build=${1:-build/release}
 out=docs/licences.md
 programs=(pellucid-cli pellucid pellucid-reader pellucid-tiff-reader pellucid-image-reader pellucid-array-reader
-    pellucid_image_codecs.so)
+    pellucid_image_codecs.so pellucid_print.so)
 headers=(libcli11-dev libeigen3-dev libglm-dev nlohmann-json3-dev)
 
 work=$(mktemp -d)

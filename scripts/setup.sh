@@ -13,9 +13,11 @@ packages=(
     g++ cmake ninja-build ccache pkg-config git ca-certificates
     # volume files, images, threads, maths, JSON, XML, command line
     zlib1g-dev libbz2-dev liblz4-dev liblzma-dev libdeflate-dev libzstd-dev libblosc-dev libgdcm-dev libtiff-dev libhdf5-dev libnetcdf-dev
-    libopenimageio-dev libtbb-dev libglm-dev libeigen3-dev nlohmann-json3-dev libpugixml-dev libcli11-dev
+    libopenimageio-dev libpango1.0-dev libtbb-dev libglm-dev libeigen3-dev nlohmann-json3-dev libpugixml-dev libcli11-dev
     # OpenGL, on a GPU or in software, with and without a display
     libepoxy-dev libgl-dev libegl-dev libopengl-dev libegl1 libgl1-mesa-dri libegl-mesa0 libosmesa6
+    # figures for print: what their letters are set in
+    fonts-liberation
     # the window
     qt6-base-dev qt6-svg-dev libqt6opengl6-dev libqt6openglwidgets6
     # the tests: Catch2, a display without a screen, a font for its windows, scripts

@@ -36,6 +36,7 @@ Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
 Command addDensity(CLI::App& program);
 Command addSequence(CLI::App& program);
+Command addFigure(CLI::App& program);
 Command addShare(CLI::App& program);
 Command addSpace(CLI::App& program);
 Command addSaliencyMap(CLI::App& program);

@@ -15,7 +15,7 @@ std::vector<Command> addCommands(CLI::App& program) {
         addSequence(program), addSpace(program),   addPlot(program),        addPropose(program),  addProbe(program),
         addRulers(program),   addViews(program),   addSaliencyMap(program), addCompare(program),  addReproduce(program),
         addBench(program),    addFilm(program),    addConvert(program),     addDescribe(program), addShare(program),
-        addColors(program)};
+        addColors(program),   addFigure(program)};
     std::ranges::move(addStudy(program), std::back_inserter(commands));
     commands.push_back(addThumbnail(program));
     commands.push_back(addCompletions(program));

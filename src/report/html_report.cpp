@@ -116,15 +116,21 @@ std::string beforeAndAfter(const Report& report) {
     mostOpacity = mostOpacity > 0 ? std::min(1.0, 1.05 * mostOpacity) : 1;
 
     const auto side = [&](const char* title, const ReportPicture& picture, const TransferFunction& tf,
-                          const OptimizeState& state, const std::vector<FeatureMeasures>& measures) {
+                          const OptimizeState& state, const std::vector<FeatureMeasures>& measures,
+                          const std::string& alt, const std::string& words) {
         const PlotPage page{.width = 480};
-        return "<div><h3>" + std::string(title) + "</h3><figure>" + pictureElement(picture, title) + "</figure>\n" +
+        return "<div><h3>" + std::string(title) + "</h3><figure>" +
+               pictureElement(picture, alt.empty() ? title : std::string(title) + ": " + alt) +
+               (words.empty() ? "" : "<figcaption>" + escapedXml(words) + "</figcaption>") + "</figure>\n" +
                plotFigure(tfPlot(tf, {report.window, report.unit, nullptr, mostOpacity}), 480, 220) + "<figure>" +
                svgElement(drawingOf(barsOf(report, state, measures), mostShare, page), "Shares of the features") +
                "</figure></div>\n";
     };
-    return "<div class=\"pair\">\n" + side("Before", report.before, report.tfBefore, start, report.measuresBefore) +
-           side("After", report.after, report.tfAfter, answer, report.measuresAfter) +
+    return "<div class=\"pair\">\n" +
+           side("Before", report.before, report.tfBefore, start, report.measuresBefore, report.altBefore,
+                report.captionBefore) +
+           side("After", report.after, report.tfAfter, answer, report.measuresAfter, report.altAfter,
+                report.captionAfter) +
            "</div>\n<p class=\"faint\">Thick bars: visibility-weighted saliency (VWS), each feature's share of what "
            "catches "
            "the eye, and an upright line at its target. Thin bars: visibility, its share of what is seen at all. Both "

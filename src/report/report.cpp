@@ -16,6 +16,7 @@
 #include "report/csv.h"
 #include "report/html_report.h"
 #include "report/page_parts.h"
+#include "session/caption.h"
 #include "session/session_json.h"
 #include "tf/shown_tf.h"
 
@@ -165,9 +166,17 @@ Report makeReport(const ReportRequest& request, Workspace& workspace, const JobC
     report.command = request.command;
     report.program = request.program;
     report.session = request.session;
-    report.measuresBefore = workspace.measure(measureInput(sceneOf(0)), job.part(piece++, pieces)).features;
-    MeasureInput input = measureInput(sceneOf(run.best));
-    report.measuresAfter = workspace.measure(input, job.part(piece++, pieces)).features;
+    const auto measured = [&](std::size_t move, std::string& words, std::string& alt) {
+        const Scene scene = sceneOf(move);
+        const Measures measures = workspace.measure(measureInput(scene), job.part(piece++, pieces));
+        const CaptionFacts facts = captionFacts(scene, measures);
+        words = caption(facts);
+        alt = altText(facts);
+        return measures.features;
+    };
+    report.measuresBefore = measured(0, report.captionBefore, report.altBefore);
+    report.measuresAfter = measured(run.best, report.captionAfter, report.altAfter);
+    const MeasureInput input = measureInput(sceneOf(run.best));
     report.settings = settingsOf(request, workspace.engine(input).name());
 
     const auto renderer = makeRenderer(request.scene.session.measure->engine, request.scene.volume);

@@ -43,6 +43,8 @@ struct Report {
     std::string unit;                                           ///< of the data; may be empty
     std::vector<FeatureMeasures> measuresBefore, measuresAfter; ///< per feature
     std::vector<double> fsBefore, fsAfter;                      ///< 2D feature saliency of both pictures
+    std::string captionBefore, captionAfter;                    ///< of both pictures, see caption(); may be empty
+    std::string altBefore, altAfter;                            ///< likewise, see altText()
     std::vector<ReportState> states;                            ///< in the order of the history
     std::vector<std::pair<std::string, std::string>> settings;  ///< what, and how it was set
     std::vector<std::string> remarks;                           ///< sentences about the answer

@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "cli_runner.h"
+#include "figure/figure_settings.h"
 #include "film/film.h"
 #include "options/setting_options.h"
 #include "session/session.h"
@@ -122,6 +123,7 @@ std::string manualOf(const std::string& group) {
     if (group == "field") return manualOf<FieldView>();
     if (group == "ground") return manualOf<GroundView>();
     if (group == "overlay") return manualOf<OverlayView>();
+    if (group == "figure") return manualOf<FigureSettings>();
     if (group == "film") return manualOf<FilmSettings>();
     if (group == "share") return manualOf<ShareSettings>();
     if (group == "coordinates") return manualOf<CoordinateSettings>();

@@ -32,6 +32,7 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/engines", {"base", "volume", "tf", "saliency", "render", "ranks"}},
     {"src/bench", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/session", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
+    {"src/figure", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
     {"src/film", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
     {"src/share", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
     {"src/study", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session"}},
@@ -39,17 +40,17 @@ const std::map<std::string, std::set<std::string>> kAllowed{
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study"}},
     {"app/cli",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "ranks", "engines", "bench", "session",
-      "study", "report", "film", "share", "cli"}},
+      "study", "report", "figure", "film", "share", "cli"}},
     {"app/mpi", {"base", "volume", "tf", "saliency", "render", "ranks", "cli"}},
     {"app/paraview", {"base", "volume", "tf", "saliency", "render", "optimize", "ranks", "session"}},
     {"app/gui",
      {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "study", "report",
-      "film", "share", "gui"}},
+      "figure", "film", "share", "gui"}},
     {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
 const std::set<std::string> kOurFolders{"base",    "volume", "tf",      "saliency",  "render",  "image_io", "optimize",
                                         "engines", "bench",  "session", "study",     "report",  "film",     "share",
-                                        "ranks",   "cli",    "gui",     "gpu_check", "foreign", "reader"};
+                                        "ranks",   "cli",    "gui",     "gpu_check", "foreign", "reader",   "figure"};
 
 /// The folders of app/gui: each may include those before its row, and itself. What lies beside them, main.cpp, all.
 const std::vector<std::set<std::string>> kGuiRows{{"jobs"},   {"store"},    {"widgets"},     {"dialogs"},

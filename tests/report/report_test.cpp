@@ -15,6 +15,7 @@
 #include "report/report.h"
 #include "run_support.h"
 #include "session/session_json.h"
+#include "session/caption.h"
 #include "support/temp_folder.h"
 #include "tf/shown_tf.h"
 
@@ -38,6 +39,7 @@ Report smallReport(const std::string& hostile = "skin") {
     report.states = {{0, 0.5, {4, 3, png}}, {1, 0.9, {4, 3, png}}, {2, 1, {4, 3, png}}};
     report.settings = {{"Volume", hostile}};
     report.remarks = {hostile};
+    report.captionBefore = report.altAfter = hostile;
     report.command = "pellucid-cli optimize '" + hostile + "'";
     report.program = "Pellucid";
     return report;
@@ -177,6 +179,16 @@ TEST_CASE("a report shows what its run began with and came to", "[report]") {
         CHECK(report.fsBefore[f] ==
               Approx(featureSaliency(featurePictures(*renderer, p.camera, p.tf, p.settings)).shares[f]).margin(0.01));
     CHECK(report.fsAfter[2] > report.fsBefore[2]);
+
+    // Both pictures are put into words, of their own shares.
+    const Scene before = sceneAtStart(c.run, c.scene);
+    const CaptionFacts facts = captionFacts(before, workspace.measure(measureInput(before)));
+    CHECK(report.captionBefore == caption(facts));
+    CHECK(report.altBefore == altText(facts));
+    CHECK(report.captionAfter != report.captionBefore);
+    const std::string html = htmlOf(report);
+    CHECK(html.find("<figcaption>" + report.captionAfter + "</figcaption>") != std::string::npos);
+    CHECK(html.find("alt=\"Before: " + report.altBefore + "\"") != std::string::npos);
 
     SECTION("the SSIM is that of the pictures") {
         const TempFolder folder;

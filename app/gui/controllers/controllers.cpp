@@ -32,6 +32,7 @@ Controllers::Controllers(Services& all) : services(all) {
     overlays.addActions();
     saving.addActions();
     addTfExchangeActions(services, opening);
+    figures.addActions();
     films.addActions();
     sharing.addActions();
     studies.addActions();
@@ -77,6 +78,7 @@ Controllers::Controllers(Services& all) : services(all) {
     watch(live, &LiveController::busyChanged);
     watch(starting, &StartController::busyChanged);
     watch(saving, &SaveController::busyChanged);
+    watch(figures, &FigureController::busyChanged);
     watch(films, &FilmController::busyChanged);
     watch(sharing, &ShareController::busyChanged);
     watch(fields, &FieldController::busyChanged);

@@ -5,6 +5,7 @@
 #include "controllers/comparison_controller.h"
 #include "controllers/feature_actions.h"
 #include "controllers/field_controller.h"
+#include "controllers/figure_controller.h"
 #include "controllers/film_controller.h"
 #include "controllers/holder_controller.h"
 #include "controllers/live_controller.h"
@@ -40,6 +41,7 @@ struct Controllers {
     PictureSaliencyController pictureSaliency{services};
     RulerController rulers{services};
     SaveController saving{services, fields, pictureSaliency, rulers};
+    FigureController figures{services};
     FilmController films{services};
     ShareController sharing{services};
     OpenController opening{services, saving};

@@ -3,6 +3,7 @@
 #include <QStatusBar>
 
 #include "base/memory.h"
+#include "controllers/figure_controller.h"
 #include "controllers/film_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
@@ -24,10 +25,12 @@ constexpr double kMostMemory = 1e6;                    // GiB: what is more stan
 
 } // namespace
 
-StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
-                       ShareController& sharing, StudyController& studies, VolumeView& view, QStatusBar& bar)
-    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_films(films), m_sharing(sharing),
-      m_studies(studies), m_view(view), m_bar(bar), m_volume(named(new QLabel(&bar), "volumeLabel")),
+StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, FigureController& figures,
+                       FilmController& films, ShareController& sharing, StudyController& studies, VolumeView& view,
+                       QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_figures(figures), m_films(films),
+      m_sharing(sharing), m_studies(studies), m_view(view), m_bar(bar),
+      m_volume(named(new QLabel(&bar), "volumeLabel")),
       m_camera(named(new QLabel(&bar), "cameraLabel",
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                         "volume fits): what pellucid-cli takes as --view"))),
@@ -50,9 +53,10 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     m_memory->hide();
     connect(&m_watch, &QTimer::timeout, this, &StatusLine::followMemory);
 
-    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &films, &sharing, &studies] {
+    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &figures, &films, &sharing, &studies] {
         opening.cancel();
         saving.cancel();
+        figures.cancel();
         films.cancel();
         sharing.cancel();
         studies.cancel();
@@ -69,6 +73,7 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     };
     watch(opening);
     watch(saving);
+    watch(figures);
     watch(films);
     watch(sharing);
     watch(studies);
@@ -162,11 +167,12 @@ void StatusLine::followMemory() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), filming = m_films.isBusy(),
-               sharing = m_sharing.isBusy();
-    const bool busy = opening || saving || filming || sharing || m_studies.isBusy();
+    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), drawing = m_figures.isBusy(),
+               filming = m_films.isBusy(), sharing = m_sharing.isBusy();
+    const bool busy = opening || saving || drawing || filming || sharing || m_studies.isBusy();
     const QString text = opening   ? m_opening.busyText()
                          : saving  ? m_saving.busyText()
+                         : drawing ? m_figures.busyText()
                          : filming ? m_films.busyText()
                          : sharing ? m_sharing.busyText()
                                    : m_studies.busyText();

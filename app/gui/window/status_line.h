@@ -13,6 +13,7 @@ namespace pellucid::gui {
 
 class VolumeView;
 class OpenController;
+class FigureController;
 class FilmController;
 class SaveController;
 class Services;
@@ -22,8 +23,9 @@ class StudyController;
 class StatusLine : public QObject {
     Q_OBJECT
 public:
-    StatusLine(Services& services, OpenController& opening, SaveController& saving, FilmController& films,
-               ShareController& sharing, StudyController& studies, VolumeView& view, QStatusBar& bar);
+    StatusLine(Services& services, OpenController& opening, SaveController& saving, FigureController& figures,
+               FilmController& films, ShareController& sharing, StudyController& studies, VolumeView& view,
+               QStatusBar& bar);
 
     /// Says how much memory is in use, from now on.
     void watchMemory();
@@ -38,6 +40,7 @@ private:
     Services& m_services;
     OpenController& m_opening;
     SaveController& m_saving;
+    FigureController& m_figures;
     FilmController& m_films;
     ShareController& m_sharing;
     StudyController& m_studies;

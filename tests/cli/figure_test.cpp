@@ -1,0 +1,55 @@
+// `figure`: figures for print.
+#include <catch2/catch.hpp>
+
+#include "cli_runner.h"
+
+using nlohmann::json;
+using pellucid::test::operator+;
+using pellucid::test::Outcome;
+using pellucid::test::Words;
+using pellucid::test::Workshop;
+
+namespace {
+
+const Words kScene{"sample:shells", "--sample-size", "12", "--tf", "tents:3", "--view", "30,20"};
+const Words kSmall = Words{"figure"} + kScene + Words{"--dpi", "50"};
+
+} // namespace
+
+TEST_CASE("figure writes PDF and SVG with the shares that measure tells", "[cli][figure]") {
+    const Workshop w;
+    const json figure = w.json(kSmall + Words{"--width-mm", "114", "--out", "a.pdf"});
+    CHECK(figure["command"] == "figure");
+    CHECK(figure["page_mm"][0] == 114.0);
+    CHECK(figure["pixels"] == json::array({224, 168})); // 114 · 50 / 25.4 = 224.4, and 3/4 of 114 mm: 168.3
+    CHECK(w.read("a.pdf").rfind("%PDF-", 0) == 0);
+    const json measured = w.json(Words{"measure"} + kScene);
+    REQUIRE(figure["features"].size() == 3);
+    for (std::size_t f = 0; f < 3; ++f)
+        for (const char* what : {"name", "vws", "visibility", "opacity"}) {
+            INFO(what);
+            CHECK(figure["features"][f][what] == measured["features"][f][what]);
+        }
+    w.json(kSmall + Words{"--parts", "scale,legend,shares,colors,caption", "--out", "a.svg"});
+    w.json(kSmall + Words{"--parts", "scale,legend,shares,colors,caption", "--out", "b.svg"});
+    CHECK(w.read("a.svg").find("<svg") != std::string::npos);
+    CHECK(w.read("a.svg") == w.read("b.svg")); // by another process
+    w.json(kSmall + Words{"--width-mm", "114", "--out", "b.pdf"});
+    CHECK(w.read("a.pdf") == w.read("b.pdf"));
+}
+
+TEST_CASE("figures that cannot be made are refused in words", "[cli][figure]") {
+    const Workshop w;
+    const auto refused = [&](const Words& options, const std::string& word) {
+        const Outcome outcome = w.run(Words{"figure"} + kScene + options);
+        INFO(outcome.err);
+        CHECK(outcome.status == 2);
+        CHECK(outcome.err.find(word) != std::string::npos);
+    };
+    refused({}, "--out");
+    refused({"--out", "a.png"}, ".svg or .pdf");
+    refused({"--out", "a.pdf", "--parts", "scale,moon"}, "moon");
+    refused({"--out", "a.pdf", "--width-mm", "0"}, "--width-mm");
+    refused({"--out", "a.pdf", "--dpi", "2400", "--width-mm", "500"}, "fewer dots per inch");
+    CHECK(w.list().empty());
+}
