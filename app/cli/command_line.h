@@ -14,5 +14,9 @@ std::string commandLineOf(std::span<const std::string> arguments);
 /// main() keeps its arguments here.
 void keepCommandLine(std::span<const std::string> arguments);
 const std::string& commandLine();
+/// The same for a picture that others get: without what the picture does not hang on, such as threads and the names of
+/// outputs, in whose place stands `out` behind `option`; and with names of files as seen from the present folder, where
+/// they begin at the root of the file system.
+std::string pictureCommand(const std::string& option, const std::string& out);
 
 } // namespace pellucid::cli

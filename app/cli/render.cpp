@@ -1,10 +1,13 @@
 // `render`: the picture of a volume as a file.
 #include <filesystem>
 
+#include "base/memory.h"
 #include "base/text.h"
+#include "command_line.h"
 #include "commands.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
+#include "image_io/layer_files.h"
 #include "options/annotate_option.h"
 #include "options/slice_options.h"
 #include "output_files.h"
@@ -14,9 +17,12 @@
 #include "render/background.h"
 #include "render/mark_maker.h"
 #include "render/memory_needs.h"
+#include "render/picture_layers.h"
 #include "render/ruler_marks.h"
+#include "report/session_picture.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/caption.h"
 #include "tf/color_vision.h"
 
 namespace pellucid::cli {
@@ -43,7 +49,9 @@ SimulatedVision parseVision(const std::string& text, const std::string& option) 
 struct Options {
     SceneOptions scene;
     SliceOptions slice;
-    std::string out;
+    std::string out;    ///< empty: layers alone
+    std::string layers; ///< empty: none
+    bool caption = false, noMetadata = false;
     AnnotationChoice annotate = AnnotationChoice::none();
     bool preview = false;
     SimulatedVision vision;
@@ -61,6 +69,13 @@ void check(const Options& o) {
     refuse({{o.scene.picture.transparent && isJpeg(o.out), "a JPEG file cannot be transparent",
              "--background transparent", "write a PNG, TIFF or EXR file"}});
     o.slice.check();
+    if (o.out.empty() && o.layers.empty()) throw isRequired("--out", "render");
+    const bool layers = !o.layers.empty();
+    refuse({{layers && slice, "a slice has no layers", "--layers", "leave it out"},
+            {layers && field, "a field has no layers", "--layers", "leave it out"},
+            {layers && o.preview, "the quick picture has no layers", "--layers", "leave it out"},
+            {o.caption && (slice || field), "a caption is of the data in a view", "--caption", "leave it out"},
+            {o.caption && o.noMetadata, "a caption goes into the file", "--caption", "leave out --no-metadata"}});
     refuse({{o.preview && slice, "a slice has no preview", "--preview", "leave it out"}});
     refuse({{field && mode, "a field is always drawn by emission and absorption", "--mode", "leave it out"},
             {slice && ground, "a slice is drawn without the ground", "--ground", "leave it out"},
@@ -174,11 +189,61 @@ Drawn drawPreview(const PictureInput& picture, Progress& progress) {
     return drawn;
 }
 
+/// Without figures in it, unless these are asked for.
+CaptionFacts factsOf(const Options& o, const Scene& scene, Progress& progress) {
+    if (!o.caption) return captionFacts(scene, {});
+    Workspace workspace;
+    const MeasureInput input = measureInput(scene);
+    prepare(workspace, input, progress);
+    Measures measures = workspace.measure(input, progress.phase("visibility"));
+    measures.coverage = workspace.coverage(input, progress.phase("coverage"));
+    return captionFacts(scene, measures, workspace.occlusion(input, progress.phase("occlusion")));
+}
+
+/// What a file of these, at `path`, says of itself. `slice`: the name of the one that it shows; empty: none.
+PictureText textOf(const Options& o, const Scene& scene, const std::string& slice, const std::string& path,
+                   Progress& progress) {
+    if (o.noMetadata) return {};
+    const CaptionFacts facts = factsOf(o, scene, progress);
+    std::string description = slice.empty() ? caption(facts) : facts.title + ", slice " + slice + ".";
+    if (const FieldView& view = *scene.session.field; view.kind)
+        description += std::string(" Field: ") + name(*view.kind) + ".";
+    const bool ofLayers = path == o.layers;
+    const std::string out = (ofLayers ? "layers" : "picture") + std::filesystem::path(path).extension().string();
+    return {"Pellucid " PELLUCID_VERSION, description, printable(pictureCommand(ofLayers ? "--layers" : "--out", out)),
+            sessionText(scene, path)};
+}
+
+/// Draws and writes them. Throws UsageError where the picture has none.
+void writeLayersOf(const Options& o, const Scene& scene, const PictureInput& picture, Progress& progress) {
+    const RenderSettings& settings = picture.settings;
+    checkLayers(picture.tf, settings);
+    const double bytes = bytesOfLayers(settings.width, settings.height, picture.tf.features.size());
+    requireMemory("layers of this size", o.layers, static_cast<std::uint64_t>(2 * bytes)); // and again for the file
+    const PictureLayers layers =
+        pictureLayers(picture.volume, picture.camera, picture.tf, settings, progress.phase("layers"));
+    const PictureText text = textOf(o, scene, {}, o.layers, progress);
+    writeLayers(layers, picture.tf.features, o.layers, text, progress.phase("writing"));
+}
+
 Drawn drawView(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
                Progress& progress) {
     Drawn drawn = o.preview ? drawPreview(picture, progress) : drawPicture(scene, picture, progress);
     if (o.annotate.any()) drawMarks(drawn.image, annotationMarks(annotationsOf(o, scene, picture, field, progress)));
     return drawn;
+}
+
+/// Where nothing but layers is written.
+Answer answerOfLayers(const Options& o, const Opened& opened, const PictureInput& picture, double seconds) {
+    const RenderSettings& settings = picture.settings;
+    Json json{{"command", "render"}, {"engine", "cpu"}, {"volume", jsonFromVolume(*opened.scene.volume)}};
+    json["layers"] = o.layers;
+    json["size"] = {settings.width, settings.height};
+    json.update(jsonFromView(picture.camera, picture.volume->geometry()));
+    json["seconds"] = {{"total", seconds}};
+    return {"wrote " + o.layers + ": layers of " + std::to_string(settings.width) + " x " +
+                std::to_string(settings.height) + " pixels, " + secondsText(seconds) + "\n",
+            std::move(json), opened.notices()};
 }
 
 Answer run(const Options& o, Progress& progress) {
@@ -188,9 +253,10 @@ Answer run(const Options& o, Progress& progress) {
     if (field || !o.scene.sessionFile) checkSlice(o, field);
     const Opened opened = resolve(o.scene, progress,
                                   {field       ? toMeasureAndDrawField()
+                                   : o.caption ? toMeasure("measuring")
                                    : o.preview ? toPreview("drawing")
                                                : toView("drawing"),
-                                   field});
+                                   field || o.caption});
     const Scene& scene = opened.scene;
     const EngineChoice engine = scene.session.measure->engine;
     refuse({{o.preview && o.scene.engine.given.has("engine") && engine != EngineChoice::Auto &&
@@ -204,11 +270,15 @@ Answer run(const Options& o, Progress& progress) {
         picture = fieldPictureInput(scene, *shown, s.width, s.height, o.scene.picture.transparent);
         o.scene.picture.applyTo(picture);
     }
+    if (!o.layers.empty()) writeLayersOf(o, scene, picture, progress);
+    if (o.out.empty()) return answerOfLayers(o, opened, picture, total.seconds());
     Drawn drawn =
         o.slice.at ? drawSlice(o, scene, picture, shown, progress) : drawView(o, scene, picture, shown, progress);
     simulateVision(drawn.image, visionMatrix(o.vision.vision, o.vision.severity));
+    const PictureText text =
+        textOf(o, scene, drawn.slice.is_null() ? "" : drawn.slice["name"].get<std::string>(), o.out, progress);
     progress.phase("writing");
-    writeImage(drawn.image, o.out);
+    writeImage(drawn.image, o.out, text);
 
     const auto [width, height] = std::pair(drawn.image.width, drawn.image.height);
     const std::string how =
@@ -218,6 +288,7 @@ Answer run(const Options& o, Progress& progress) {
     if (o.preview) json["preview"] = drawn.order;
     json["volume"] = jsonFromVolume(*scene.volume);
     json["file"] = o.out;
+    if (!o.layers.empty()) json["layers"] = o.layers;
     json["size"] = {width, height};
     if (drawn.slice.is_null())
         json.update(jsonFromView(picture.camera, picture.volume->geometry()));
@@ -241,8 +312,23 @@ Command addRender(CLI::App& program) {
     o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     o->scene.engine.add(*app);
     o->scene.engine.addDefinitions(*app);
-    addOutputFile(*app, "--out", o->out, "the picture to write: .png, .tif, .exr or .jpg", checkImageSuffix)
-        ->required();
+    addOutputFile(*app, "--out", o->out,
+                  "the picture to write: .png, .tif, .exr or .jpg; it says of itself what --no-metadata leaves out",
+                  checkImageSuffix);
+    addValue(
+        *app, "--layers", "FILE.exr|DIR", o->layers,
+        [](const std::string& path, const std::string& option) {
+            checkLayersPath(path);
+            if (!isLayersFile(path)) return parseOutputFolder(path, option);
+            addOutputFile(path, option);
+            return path;
+        },
+        "write what the picture is made of: what each feature adds to every pixel, depth and normals, as one EXR file "
+        "or as a folder of PNG files; without --out nothing else");
+    app->add_flag("--caption", o->caption, "measure what the features show, and say it in the file, as describe does");
+    app->add_flag("--no-metadata", o->noMetadata,
+                  "write no caption, command and session into the file; they name the data files as seen from its "
+                  "folder");
     o->scene.picture.add(*app);
     o->scene.ground.add(*app);
     o->scene.overlay.add(*app);

@@ -5,8 +5,8 @@
 
 #include "output_files.h"
 #include "render/memory_needs.h"
+#include "report/session_picture.h"
 #include "session/scene_data.h"
-#include "session/session_json.h"
 #include "tf/formats/tf_file.h"
 
 namespace pellucid::cli {
@@ -15,10 +15,13 @@ void SceneOptions::addSession(CLI::App& app) {
     addValue(
         app, "--session", "FILE",
         [this](const std::string& text, const std::string& option) {
-            if (text.empty()) throw UsageError("the file name is empty", option, "name a session, *.pellucid.json");
+            if (text.empty())
+                throw UsageError("the file name is empty", option,
+                                 "name a session, *.pellucid.json or a PNG picture that carries one");
             sessionFile = text;
         },
-        "everything as in this saved session; VOLUME and options override it", "Volume");
+        "everything as in this saved session, or in this PNG picture that carries one; VOLUME and options override it",
+        "Volume");
 }
 
 void SceneOptions::addForData(CLI::App& app, VolumeOptions::SizeIs size) {
@@ -42,7 +45,7 @@ void SceneOptions::addForFigures(CLI::App& app, VolumeOptions::SizeIs size) {
 }
 
 SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<std::string>& notices) {
-    SessionFile file = options.sessionFile ? readSession(*options.sessionFile) : SessionFile{};
+    SessionFile file = options.sessionFile ? readSessionOrPicture(*options.sessionFile) : SessionFile{};
     notices.insert(notices.end(), file.notices.begin(), file.notices.end());
     SceneInputs inputs;
     inputs.session = std::move(file.session);

@@ -13,8 +13,6 @@ OIIO::TypeDesc typeOf(SampleKind kind) {
         return OIIO::TypeDesc::UINT8;
     case SampleKind::Shorts:
         return OIIO::TypeDesc::UINT16;
-    case SampleKind::Halves:
-        return OIIO::TypeDesc::HALF;
     case SampleKind::Floats:
         break;
     }
@@ -29,6 +27,16 @@ std::string encode(const ImageToEncode& image, const std::string& suffix, std::v
     spec.attribute("oiio:UnassociatedAlpha", 1);
     // OpenImageIO 2.4 spoils a TIFF in memory by a directory for Exif tags, which would only say sRGB.
     spec.attribute("tiff:write_exif", 0);
+    spec.attribute("DateTime", ""); // else it writes the present one, and no two files are the same
+    if (!image.channelNames.empty()) {
+        spec.channelnames = image.channelNames;
+        spec.alpha_channel = spec.channelindex("A");
+        spec.z_channel = -1;
+    }
+    for (const auto& [name, text] : image.texts) spec.attribute(name, text);
+    if (!image.iccProfile.empty())
+        spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(image.iccProfile.size())),
+                       image.iccProfile.data());
     OIIO::Filesystem::IOVecOutput memory(bytes);
     void* proxy = &memory;
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
@@ -45,7 +53,7 @@ std::string decode(const std::string& path, DecodedImage& image) {
     const auto in = OIIO::ImageInput::open(path, &config);
     if (!in) return OIIO::geterror();
     const OIIO::ImageSpec& spec = in->spec();
-    image = {spec.width, spec.height, spec.nchannels, {}};
+    image = {spec.width, spec.height, spec.nchannels, spec.alpha_channel, {}};
     image.values.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                         static_cast<std::size_t>(spec.nchannels));
     if (in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data())) return {};

@@ -5,17 +5,13 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pellucid {
 
-enum class SampleKind {
-    Bytes,
-    Shorts,
-    Halves,
-    Floats
-};                                        ///< in the file: integers of 8 and 16 bits, floats of 16 and 32
-enum class ValueKind { Colors, Numbers }; ///< sRGB with straight alpha; whatever else
+enum class SampleKind { Bytes, Shorts, Floats }; ///< in the file: integers of 8 and 16 bits, floats of 32
+enum class ValueKind { Colors, Numbers };        ///< sRGB with straight alpha; whatever else, such as linear light
 
 /// Rows from the top, `valuesPerPixel` floats each, of which the file gets the first `channels`.
 struct ImageToEncode {
@@ -24,11 +20,15 @@ struct ImageToEncode {
     ValueKind kind;
     const float* values;
     std::size_t valuesPerPixel;
+    std::vector<std::string> channelNames = {};                  ///< empty: the usual ones
+    std::vector<std::pair<std::string, std::string>> texts = {}; ///< what the file says, by OpenImageIO's names
+    std::vector<unsigned char> iccProfile = {};                  ///< empty: none
 };
 
 /// Rows from the top, `channels` floats per pixel.
 struct DecodedImage {
     int width = 0, height = 0, channels = 0;
+    int alpha = -1; ///< the channel that has it; -1: none
     std::vector<float> values;
 };
 

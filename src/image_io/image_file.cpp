@@ -10,6 +10,8 @@
 #include "base/text.h"
 #include "image_io/image_codecs.h"
 #include "image_io/png_bytes.h"
+#include "image_io/srgb_profile.h"
+#include "tf/lch.h"
 
 namespace pellucid {
 
@@ -20,7 +22,7 @@ namespace {
 std::string suffixOf(const std::string& path) { return lowerCase(fs::path(path).extension().string()); }
 
 SampleKind samplesOf(const std::string& suffix) {
-    if (suffix == ".exr") return SampleKind::Halves;
+    if (suffix == ".exr") return SampleKind::Floats;
     if (suffix == ".tif" || suffix == ".tiff") return SampleKind::Shorts;
     return SampleKind::Bytes;
 }
@@ -63,11 +65,62 @@ std::vector<unsigned char> encoded(const ImageToEncode& image, const std::string
     return bytes;
 }
 
-std::vector<unsigned char> encoded(const Image& image, const std::string& suffix, const std::string& path) {
+std::vector<PngText> pngTexts(const PictureText& text) {
+    std::vector<PngText> texts;
+    for (const auto& [keyword, value] : {std::pair(kSoftwareKeyword, &text.software),
+                                         {kDescriptionKeyword, &text.description},
+                                         {kCommandKeyword, &text.command},
+                                         {kSessionKeyword, &text.session}})
+        if (!value->empty()) texts.push_back({keyword, *value});
+    return texts;
+}
+
+/// By the names that OpenImageIO has for them.
+std::vector<std::pair<std::string, std::string>> foreignTexts(const PictureText& text, const std::string& suffix) {
+    std::vector<std::pair<std::string, std::string>> texts;
+    for (const PngText& one : pngTexts(text)) {
+        const bool isOwn = one.keyword == kCommandKeyword || one.keyword == kSessionKeyword;
+        if (isOwn && suffix != ".exr") continue; // there is no tag for it
+        texts.emplace_back(one.keyword == kDescriptionKeyword ? "ImageDescription" : one.keyword, one.text);
+    }
+    return texts;
+}
+
+/// Straight sRGB to linear light, premultiplied.
+std::vector<float> linearLight(const Image& image) {
+    std::vector<float> light = image.rgba;
+    for (std::size_t i = 0; i < light.size(); i += 4)
+        for (std::size_t c = 0; c < 3; ++c)
+            light[i + c] = static_cast<float>(linearFromSrgb(light[i + c])) * light[i + 3];
+    return light;
+}
+
+/// And back.
+void becomeSrgb(Image& image) {
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const float alpha = image.rgba[i + 3];
+        for (std::size_t c = 0; c < 3; ++c) {
+            float& value = image.rgba[i + c];
+            value = static_cast<float>(srgbFromLinear(alpha > 0 ? value / alpha : value));
+        }
+    }
+}
+
+std::vector<unsigned char> encoded(const Image& image, const std::string& suffix, const std::string& path,
+                                   const PictureText& text) {
+    if (suffix == ".png") return pngBytes(image, pngTexts(text));
     const int channels = suffix == ".jpg" || suffix == ".jpeg" ? 3 : 4;
-    if (suffix == ".png") return pngBytes(image);
-    return encoded({image.width, image.height, channels, samplesOf(suffix), ValueKind::Colors, image.rgba.data(), 4},
-                   suffix, path);
+    ImageToEncode encoding{image.width,       image.height,      channels, samplesOf(suffix),
+                           ValueKind::Colors, image.rgba.data(), 4};
+    encoding.texts = foreignTexts(text, suffix);
+    if (encoding.samples == SampleKind::Shorts) encoding.iccProfile = srgbIccProfile();
+    std::vector<float> light;
+    if (suffix == ".exr") {
+        light = linearLight(image);
+        encoding.kind = ValueKind::Numbers;
+        encoding.values = light.data();
+    }
+    return encoded(encoding, suffix, path);
 }
 
 } // namespace
@@ -79,9 +132,9 @@ void checkImageSuffix(const std::string& path) {
     throw UsageError("images are written as .png, .exr, .tif or .jpg", path, "give one of these suffixes");
 }
 
-void writeImage(const Image& image, const std::string& path) {
+void writeImage(const Image& image, const std::string& path, const PictureText& text) {
     checkImageSuffix(path);
-    writeBytesAtomically(path, encoded(image, suffixOf(path), path));
+    writeBytesAtomically(path, encoded(image, suffixOf(path), path, text));
 }
 
 std::vector<unsigned char> pngOf(const Image& image) { return pngBytes(image); }
@@ -100,6 +153,18 @@ void writePlane(const Plane& plane, const std::string& path) {
     writeBytesAtomically(path, suffix == ".png" ? pngBytes(plane) : encoded(image, suffix, path));
 }
 
+std::vector<unsigned char> exrOf(int width, int height, const std::vector<std::string>& channels,
+                                 const std::vector<float>& values,
+                                 const std::vector<std::pair<std::string, std::string>>& texts,
+                                 const std::string& path) {
+    ImageToEncode image{
+        width,         height,         static_cast<int>(channels.size()), SampleKind::Floats, ValueKind::Numbers,
+        values.data(), channels.size()};
+    image.channelNames = channels;
+    image.texts = texts;
+    return encoded(image, ".exr", path);
+}
+
 Image readImage(const std::string& path) {
     DecodedImage decoded;
     const std::string error = codecs().decode(path, decoded);
@@ -109,8 +174,9 @@ Image readImage(const std::string& path) {
     for (std::size_t p = 0; p < image.rgba.size() / 4; ++p) {
         const float* from = &decoded.values[p * channels];
         for (std::size_t c = 0; c < 3; ++c) image.rgba[4 * p + c] = from[channels >= 3 ? c : 0];
-        image.rgba[4 * p + 3] = channels == 4 || channels == 2 ? from[channels - 1] : 1.0f;
+        image.rgba[4 * p + 3] = decoded.alpha >= 0 ? from[decoded.alpha] : 1.0f;
     }
+    if (channels >= 3 && suffixOf(path) == ".exr") becomeSrgb(image);
     return image;
 }
 

@@ -32,6 +32,32 @@ void addChunk(Bytes& file, std::string_view name, const unsigned char* data, std
     addNumber(file, static_cast<std::uint32_t>(crc32(0, &file[begin], static_cast<uInt>(file.size() - begin))));
 }
 
+constexpr std::size_t kLongText = 1024; ///< bytes; longer ones are packed
+
+/// iTXt, which is UTF-8 text, or tEXt where it is ASCII and short, as every reader knows it.
+void addText(Bytes& file, const PngText& text) {
+    Bytes data(text.keyword.begin(), text.keyword.end());
+    data.push_back(0);
+    const bool isAscii = std::ranges::all_of(text.text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+    const bool isLong = text.text.size() > kLongText;
+    if (isAscii && !isLong) {
+        data.insert(data.end(), text.text.begin(), text.text.end());
+        return addChunk(file, "tEXt", data.data(), data.size());
+    }
+    data.insert(data.end(), {static_cast<unsigned char>(isLong), 0, 0, 0}); // by zlib; no language, no translation
+    if (isLong) {
+        uLongf size = compressBound(static_cast<uLong>(text.text.size()));
+        Bytes packed(size);
+        if (compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(text.text.data()),
+                      static_cast<uLong>(text.text.size()), Z_BEST_COMPRESSION) != Z_OK)
+            throw std::bad_alloc();
+        data.insert(data.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
+    } else {
+        data.insert(data.end(), text.text.begin(), text.text.end());
+    }
+    addChunk(file, "iTXt", data.data(), data.size());
+}
+
 /// Packs what it is given, and adds it to the file in chunks.
 class Packer {
 public:
@@ -134,16 +160,18 @@ struct Form {
     int width, height;
     unsigned char colorType, bits;
     std::size_t channels;
+    bool isSrgb;
 };
 
-Bytes pngOf(const Form& form, const float* values) {
+Bytes pngOf(const Form& form, const float* values, std::span<const PngText> texts) {
     Bytes file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, head;
     addNumber(head, static_cast<std::uint32_t>(form.width));
     addNumber(head, static_cast<std::uint32_t>(form.height));
     head.insert(head.end(), {form.bits, form.colorType, 0, 0, 0}); // packed, filtered and in order as usual
     addChunk(file, "IHDR", head.data(), head.size());
     const unsigned char perceptual = 0;
-    if (form.colorType == kRgba) addChunk(file, "sRGB", &perceptual, 1);
+    if (form.isSrgb) addChunk(file, "sRGB", &perceptual, 1);
+    for (const PngText& text : texts) addText(file, text);
 
     const std::size_t bytesPerValue = form.bits / 8, perRow = static_cast<std::size_t>(form.width) * form.channels;
     Bytes row(perRow * bytesPerValue);
@@ -165,8 +193,16 @@ Bytes pngOf(const Form& form, const float* values) {
 
 } // namespace
 
-Bytes pngBytes(const Image& image) { return pngOf({image.width, image.height, kRgba, 8, 4}, image.rgba.data()); }
+Bytes pngBytes(const Image& image, std::span<const PngText> texts) {
+    return pngOf({image.width, image.height, kRgba, 8, 4, true}, image.rgba.data(), texts);
+}
 
-Bytes pngBytes(const Plane& plane) { return pngOf({plane.width, plane.height, kGrey, 16, 1}, plane.values.data()); }
+Bytes deepPngBytes(const Image& image, bool areColors) {
+    return pngOf({image.width, image.height, kRgba, 16, 4, areColors}, image.rgba.data(), {});
+}
+
+Bytes pngBytes(const Plane& plane) {
+    return pngOf({plane.width, plane.height, kGrey, 16, 1, false}, plane.values.data(), {});
+}
 
 } // namespace pellucid

@@ -25,11 +25,11 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{
-    "info",         "samples", "presets",  "generate", "convert", "render",    "measure", "fields", "propose",
-    "refine",       "density", "optimize", "probe",    "rulers",  "views",     "space",   "bench",  "sequence",
-    "saliency-map", "compare", "describe", "plot",     "film",    "reproduce", "share",   "study",
-    "colors"};
+const std::vector<std::string> kCommands{"info",         "samples", "presets",  "generate", "convert", "render",
+                                         "measure",      "fields",  "propose",  "refine",   "density", "optimize",
+                                         "probe",        "rulers",  "views",    "space",    "bench",   "sequence",
+                                         "saliency-map", "compare", "describe", "plot",     "film",    "reproduce",
+                                         "share",        "study",   "colors",   "figure"};
 /// Of commands that have commands of their own.
 const std::vector<std::string> kStudyCommands{"prepare", "run", "analyze"};
 /// What file managers and shells call.

@@ -17,6 +17,7 @@
 #include "render/cpu/sheared_picture.h"
 #include "render/ground_raster.h"
 #include "render/overlay.h"
+#include "render/picture_layers.h"
 
 namespace pellucid {
 
@@ -99,6 +100,29 @@ public:
         draw(camera, tf, settings, 1, image, tiles, done, job);
     }
 
+    PictureLayers layers(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
+                         const JobControl& job) {
+        PictureLayers result(settings.width, settings.height, tf.features.size());
+        Seen seen;
+        fillScenes(camera, tf, settings, 1, {settings.width, settings.height, result.picture.rgba.data()}, seen);
+        m_rays.fillLight(camera, false, seen.first.light); // for normals, whatever the picture needs
+        if (settings.light.occlusion > 0) m_rays.fillLight(camera, true, seen.first.light);
+        const std::vector<std::array<float, 2>> entries = m_rays.entriesOfFeatures();
+        std::vector<float*> planes;
+        for (Image& layer : result.features) planes.push_back(layer.rgba.data());
+        planes.push_back(result.rest.rgba.data());
+        PacketLayers to;
+        to.count = static_cast<int>(entries.size());
+        to.entries = reinterpret_cast<const float(*)[2]>(entries.data());
+        to.rgba = planes.data();
+        to.depth = result.depth.values.data();
+        to.normal = result.normals.data();
+        to.eye = static_cast<float>(-raysOf(camera, settings, 1).middle);
+        seen.first.layers = &to;
+        drawTiles(seen.first, layerKernel(), tilesOf(result.picture), {}, job);
+        return result;
+    }
+
 private:
     /// Of the volume that the picture is of, or of which it shows a part.
     const Geometry& whole() const { return m_options.blockOf ? *m_options.blockOf : m_volume->geometry(); }
@@ -122,13 +146,17 @@ private:
                 scene->groundDepth = ground.depth.data();
                 scene->ground = ground.rgba.data();
             }
-        const PacketKernel kernel = packetKernels()[static_cast<std::size_t>(m_options.kernel)];
+        drawTiles(seen.first, packetKernels()[static_cast<std::size_t>(m_options.kernel)], tiles, done, job);
+    }
+
+    static void drawTiles(const PacketScene& scene, PacketKernel kernel, const std::vector<ImagePart>& tiles,
+                          const std::function<void(const ImagePart&)>& done, const JobControl& job) {
         std::mutex mutex;
         std::atomic<std::size_t> count = 0;
         parallelFor(tiles.size(), [&](std::size_t i) {
             job.throwIfStopped();
             const ImagePart& tile = tiles[i];
-            kernel(seen.first, {tile.x0, tile.y0, tile.x1, tile.y1});
+            kernel(scene, {tile.x0, tile.y0, tile.x1, tile.y1});
             if (done) {
                 const std::lock_guard lock(mutex);
                 done(tile);
@@ -305,6 +333,15 @@ std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volu
 }
 std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume) {
     return makeCpuRenderer(std::move(volume), {});
+}
+
+PictureLayers pictureLayers(std::shared_ptr<const Volume> volume, const Camera& camera, const TransferFunction& tf,
+                            const RenderSettings& settings, const JobControl& job) {
+    checkLayers(tf, settings);
+    RenderSettings transparent = settings;
+    transparent.background.reset();
+    transparent.backgroundTop.reset();
+    return CpuRenderer(std::move(volume), {}).layers(camera, tf, transparent, job);
 }
 
 } // namespace pellucid

@@ -57,6 +57,16 @@ struct PacketLight {
 inline constexpr int kSpecularEntries = 2048;
 inline constexpr std::size_t kMostSurfaces = 256; ///< features that mode Surface draws
 
+/// What a picture is made of, beside it, in pixels as many as it has. All begin as they are where nothing is met.
+struct PacketLayers {
+    int count = 0;                       ///< features, at most kMostSurfaces − 1; what lies in none is one layer more
+    const float (*entries)[2] = nullptr; ///< of each: [first, end) in the table of the transfer function
+    float* const* rgba = nullptr;        ///< [count + 1]: pixels × 4, colour and share of the opacity; 0 at first
+    float* depth = nullptr;              ///< world length from the eye to where half is absorbed; infinity at first
+    float* normal = nullptr;             ///< pixels × 3: right, up, toward the viewer; 0 at first
+    float eye = 0;                       ///< t of the eye, or of the plane through it for parallel rays
+};
+
 struct PacketScene {
     PacketMode mode = PacketMode::Composite;
     PacketCamera camera;
@@ -111,6 +121,7 @@ struct PacketScene {
     const float* groundDepth = nullptr;    ///< width × height: where rays end; infinity: nowhere. Null: no ground
     const std::uint32_t* ground = nullptr; ///< its colours (VoxelColors::pack())
 
+    const PacketLayers* layers = nullptr; ///< for layer kernels
     const PacketScene* overlay = nullptr; ///< a second volume, seen by the same rays; null: none
 
     bool hasBackground = false;
@@ -128,5 +139,10 @@ void renderTileGeneric(const PacketScene&, const PacketTile&);
 void renderTileAvx2(const PacketScene&, const PacketTile&);
 /// The kernels that this processor can run, the fastest first.
 std::span<const PacketKernel> packetKernels();
+
+/// The same picture, in mode Composite without ground and overlay, and its layers.
+void layerTileGeneric(const PacketScene&, const PacketTile&);
+void layerTileAvx2(const PacketScene&, const PacketTile&);
+PacketKernel layerKernel(); ///< the fastest that this processor can run
 
 } // namespace pellucid

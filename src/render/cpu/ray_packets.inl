@@ -4,19 +4,23 @@
 //   ray_packets_light.inl    gradients, and what light makes of colours
 //   ray_packets_modes.inl    the modes that do not composite
 //   ray_packets_overlay.inl  two volumes in one pass
+//   ray_packets_layers.inl   what the picture is made of, beside it
 // docs/method.md, "The picture", says what is computed.
+#include "render/cpu/ray_packets_layers.inl"
 #include "render/cpu/ray_packets_overlay.inl"
 
 namespace pellucid {
 namespace {
 
 /// Emission and absorption along eight rays. Between two samples the intensity goes linearly, and what it meets there
-/// comes from running integrals over the transfer function, so that thin tents and steps count in full.
-template <bool kLight, bool kInvalid, bool kVoxelColors>
+/// comes from running integrals over the transfer function, so that thin tents and steps count in full. `kLayers`: what
+/// is met is told to `layers`, too.
+template <bool kLight, bool kInvalid, bool kVoxelColors, bool kLayers = false>
 class Compositing {
 public:
-    Compositing(const PacketScene& s, const Samples& samples, const Rays& rays)
-        : m_s(s), m_samples(samples), m_lighting(s, samples), m_voxelColors(s, samples), m_rays(rays) {}
+    Compositing(const PacketScene& s, const Samples& samples, const Rays& rays, LayerSums* layers = nullptr)
+        : m_s(s), m_samples(samples), m_lighting(s, samples), m_voxelColors(s, samples), m_rays(rays),
+          m_layers(layers) {}
 
     Gathered run() {
         float end = endOf(m_rays);
@@ -214,6 +218,7 @@ private:
             p.depth *= m_lighting.depthShare(Lighting::lengthOf(inCamera));
         }
         const Vec8 left = m_clear * expMinus(p.depth), weight = m_clear - left;
+        if constexpr (kLayers) findMiddle(p, last.u, next.u, left);
         m_clear = left;
 
         const unsigned bits = bitsOf(weight > 0);
@@ -224,14 +229,22 @@ private:
             for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
                 const int n = __builtin_ctz(lanes);
                 unlit()[n] += weight[n] * rgb[n];
+                if constexpr (kLayers)
+                    m_layers->add(n, courseOf(p, n), weight[n],
+                                  [&](const LayerSums::Course&, float share) { return weight[n] * share * rgb[n]; });
             }
         } else {
             const Vec8 per = weight / p.met;
             for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
                 const int n = __builtin_ctz(lanes);
                 unlit()[n] += per[n] * colorsOf(p, n);
+                if constexpr (kLayers)
+                    m_layers->add(n, courseOf(p, n), weight[n], [&](const LayerSums::Course& part, float) {
+                        return per[n] * m_layers->colorsOf(part);
+                    });
             }
         }
+        if constexpr (kLayers && !kLight) m_layers->keepUnlit(bits);
         if constexpr (kLight) {
             m_pending += weight;
             m_lastPlace = weight > 0 ? p.place : m_lastPlace;
@@ -280,8 +293,33 @@ private:
             const int n = __builtin_ctz(lanes);
             m_color.rgb[n] += m_lighting.lit(m_unlit[n], m_pending[n], shade, n);
             m_unlit[n] = Vec4{};
+            if constexpr (kLayers)
+                m_layers->keep(n, [&](Vec4 rgb, float weight) { return m_lighting.lit(rgb, weight, shade, n); });
         }
         m_pending = which ? Vec8{} : m_pending;
+    }
+
+    /// The places in the table that ray n runs through.
+    static LayerSums::Course courseOf(const Piece& p, int n) {
+        return {p.from[n], p.to[n], p.fromFraction[n], p.toFraction[n]};
+    }
+    /// Of the rays of which half is absorbed between u = `from` and `to`: where, and the gradient there. `left` of the
+    /// light comes through.
+    void findMiddle(const Piece& p, Vec8 from, Vec8 to, Vec8 left) {
+        const unsigned bits = bitsOf((m_clear > kHalf) & (left <= kHalf));
+        if (bits == 0) return;
+        Vec8 u = from;
+        for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
+            const int n = __builtin_ctz(lanes);
+            const float part = __builtin_logf(m_clear[n] / kHalf) / p.depth[n];
+            u[n] += m_layers->wayTo(courseOf(p, n), part) * (to[n] - from[n]);
+        }
+        Vec8 position[3], gradient[3], inCamera[3];
+        positionAt(m_rays, u, position);
+        for (auto& g : gradient) g = Vec8{};
+        m_lighting.gradientsAt(position, bits, gradient);
+        m_lighting.toCamera(gradient, inCamera);
+        m_layers->keepMiddle(m_rays, u, inCamera, bits);
     }
 
     const PacketScene& m_s;
@@ -289,6 +327,7 @@ private:
     Lighting m_lighting;
     VoxelColorSamples m_voxelColors;
     Rays m_rays;
+    LayerSums* m_layers;   ///< null without kLayers
     Vec8 m_clear = all(1); ///< transmittance
     Colors m_color{};
     Vec4 m_unlit[kWide]{};
@@ -358,6 +397,29 @@ Gathered gatherBoth(const PacketScene& s, const Samples& samples, const Rays& ra
     for (int n = 0; n < kWide; ++n) front.color.rgb[n] += front.clear[n] * behind.color.rgb[n];
     front.clear *= behind.clear;
     return front;
+}
+
+template <bool kInvalid>
+Gathered gatherLayers(const PacketScene& s, const Samples& samples, const Rays& rays, LayerSums& layers) {
+    if (s.voxelColors) {
+        if (s.light.any) return Compositing<true, kInvalid, true, true>(s, samples, rays, &layers).run();
+        return Compositing<false, kInvalid, true, true>(s, samples, rays, &layers).run();
+    }
+    if (s.light.any) return Compositing<true, kInvalid, false, true>(s, samples, rays, &layers).run();
+    return Compositing<false, kInvalid, false, true>(s, samples, rays, &layers).run();
+}
+
+void layerTile(const PacketScene& s, const PacketTile& tile) {
+    const Samples samples(s);
+    const Int8 right{0, 1, 2, 3, 0, 1, 2, 3}, down{0, 0, 0, 0, 1, 1, 1, 1};
+    for (int y = tile.y0; y < tile.y1; y += 2)
+        for (int x = tile.x0; x < tile.x1; x += 4) {
+            const Rays rays = raysOf(s, x + right, y + down);
+            LayerSums layers(s, x + right, y + down);
+            store(s, tile, x, y,
+                  s.valid ? gatherLayers<true>(s, samples, rays, layers)
+                          : gatherLayers<false>(s, samples, rays, layers));
+        }
 }
 
 void renderTile(const PacketScene& s, const PacketTile& tile) {

@@ -4,5 +4,6 @@
 namespace pellucid {
 
 void renderTileAvx2(const PacketScene& scene, const PacketTile& tile) { renderTile(scene, tile); }
+void layerTileAvx2(const PacketScene& scene, const PacketTile& tile) { layerTile(scene, tile); }
 
 } // namespace pellucid

@@ -6,6 +6,7 @@
 namespace pellucid {
 
 void renderTileGeneric(const PacketScene& scene, const PacketTile& tile) { renderTile(scene, tile); }
+void layerTileGeneric(const PacketScene& scene, const PacketTile& tile) { layerTile(scene, tile); }
 
 std::span<const PacketKernel> packetKernels() {
     static const std::vector<PacketKernel> kernels = [] {
@@ -16,6 +17,13 @@ std::span<const PacketKernel> packetKernels() {
         return all;
     }();
     return kernels;
+}
+
+PacketKernel layerKernel() {
+#ifdef PELLUCID_HAVE_AVX2_SWEEP
+    if (packetKernels().front() == renderTileAvx2) return layerTileAvx2;
+#endif
+    return layerTileGeneric;
 }
 
 } // namespace pellucid

@@ -138,6 +138,16 @@ void RayVolume::fillRegion(std::span<const VoxelPlane> part, const VoxelClipping
             add(moved(plane).normal, moved(plane).offset);
 }
 
+std::vector<std::array<float, 2>> RayVolume::entriesOfFeatures() const {
+    const double cells = static_cast<double>(m_table->cells());
+    // The cell i holds what RayTable takes at the intensity i / (cells − 1), and begins at the entry i.
+    const auto cellAt = [&](double s) { return static_cast<float>(std::ceil(s * (cells - 1))); };
+    std::vector<std::array<float, 2>> entries;
+    for (const Feature& f : m_prepared.tf.features)
+        entries.push_back({cellAt(f.a), f.b >= 1 ? static_cast<float>(cells) : cellAt(f.b)});
+    return entries;
+}
+
 void RayVolume::fillFeatures(PacketScene& s) const {
     s.features = m_features.data();
     s.featureCount = static_cast<int>(m_features.size());

@@ -1,6 +1,7 @@
 // A volume as rays read it: its codes, and what follows of a transfer function.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -40,6 +41,8 @@ public:
     /// The sides of the box, what `part` leaves of it, and a clipping, both in the voxels of `first`.
     void fillRegion(std::span<const VoxelPlane> part, const VoxelClipping& clipping, const Geometry& first,
                     PacketScene& scene) const;
+    /// Of each feature of the transfer function: [first, end) of its entries in the table.
+    std::vector<std::array<float, 2>> entriesOfFeatures() const;
     /// Of features and of the one that is drawn alone.
     void fillFeatures(PacketScene& scene) const;
     /// What of light the volume itself decides.
