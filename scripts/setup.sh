@@ -20,8 +20,8 @@ packages=(
     fonts-liberation
     # the window
     qt6-base-dev qt6-svg-dev libqt6opengl6-dev libqt6openglwidgets6
-    # the tests: Catch2, a display without a screen, a font for its windows, scripts
-    catch2 xvfb xauth fonts-dejavu-core python3 python3-numpy
+    # the tests: Catch2, a display without a screen, a font for its windows, scripts, films and what plays them back
+    catch2 xvfb xauth fonts-dejavu-core python3 python3-numpy ffmpeg
     "${more[@]}"
 )
 

@@ -19,6 +19,7 @@
 #include "output_files.h"
 #include "parse.h"
 #include "ranks/communicator.h"
+#include "stop_note.h"
 #include "volume/file_contents.h"
 #include "volume/raw_guess.h"
 
@@ -204,7 +205,9 @@ Outcome runCommand(const Program& info, const CLI::App& program, const Command& 
         return outcome;
     } catch (const Cancelled&) {
         progress.finish();
-        return {stoppedStatus(), {}, {}, {}};
+        Outcome outcome{stoppedStatus(), {}, {}, {}};
+        if (!stopNote().empty()) outcome.notices.push_back(stopNote());
+        return outcome;
     } catch (...) {
         progress.finish();
         if (interruptStatus() != 0) return {stoppedStatus(), {}, {}, {}};

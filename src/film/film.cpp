@@ -15,7 +15,9 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "engines/engines.h"
+#include "film/film_progress.h"
 #include "film/movie_file.h"
+#include "image_io/animated_png.h"
 #include "image_io/image_file.h"
 #include "render/annotation_raster.h"
 #include "render/camera_motion.h"
@@ -53,11 +55,15 @@ Camera turnedAbout(const Camera& camera, const Vec3& axis, double degrees) {
     return turned;
 }
 
-int picturesIn(const FilmSettings& settings) {
-    const double wanted = std::round(settings.seconds * settings.framesPerSecond);
-    if (wanted > kMostFilmPictures)
+void checkCount(double pictures) {
+    if (pictures > kMostFilmPictures)
         throw UsageError("the film would have more than " + std::to_string(kMostFilmPictures) + " pictures", "",
                          "make it shorter, or take fewer pictures a second");
+}
+
+int picturesIn(const FilmSettings& settings) {
+    const double wanted = std::round(settings.seconds * settings.framesPerSecond);
+    checkCount(wanted);
     return std::max(1, static_cast<int>(wanted));
 }
 
@@ -91,6 +97,16 @@ class Artist {
 public:
     explicit Artist(const FilmTask& task) : m_task(task) {}
 
+    /// `scene` is at the shot's frame.
+    Image draw(const Scene& scene, const FilmShot& shot, const JobControl& job) {
+        if (shot.time) {
+            const KeyState state = stateAt(m_task.keys, *shot.time, scene.volume->geometry());
+            return draw(withKeyState(scene, state), state.camera, job);
+        }
+        return draw(scene, shot.camera, job);
+    }
+
+private:
     Image draw(const Scene& scene, const Camera& camera, const JobControl& job) {
         PictureInput picture = pictureInput(scene, m_task.width, m_task.height);
         picture.camera = camera;
@@ -110,7 +126,6 @@ public:
         return image;
     }
 
-private:
     const FilmTask& m_task;
     std::shared_ptr<const Volume> m_volume;
     std::unique_ptr<ImageRenderer> m_renderer;
@@ -122,21 +137,24 @@ private:
 template <>
 std::span<const Setting> settingsOf<FilmSettings>() {
     using F = FilmSettings;
-    constexpr auto hasLength = [](const void* f) { return static_cast<const F*>(f)->kind != FilmKind::Series; };
+    constexpr auto hasLength = [](const void* f) {
+        const FilmKind kind = static_cast<const F*>(f)->kind;
+        return kind == FilmKind::Turntable || kind == FilmKind::Views;
+    };
     constexpr auto turns = [](const void* f) { return static_cast<const F*>(f)->kind == FilmKind::Turntable; };
-    static constexpr const char* kKinds[] = {"Turntable", "Frames of the series", "From view to view"};
+    static constexpr const char* kKinds[] = {"Turntable", "Frames of the series", "From view to view", "Keyframes"};
     static const Setting kSettings[] = {
         {.key = "kind",
          .at = member<&F::kind>,
          .words = "&Kind",
          .help =
              "What the film shows: the volume turning once around, every frame of the series from the present view, "
-             "or a way from view to view.",
+             "a way from view to view, or keyframes of view, transfer function, clipping, light and frame.",
          .choices = kKinds},
         {.key = "seconds",
          .at = member<&F::seconds>,
          .words = "&Length",
-         .help = "How long a turntable or the way through all views takes.",
+         .help = "How long a turntable takes, or the way through all views or sessions.",
          .range = {0, 3600, NumberRange::Open::Low},
          .unit = "s",
          .used = hasLength},
@@ -221,21 +239,17 @@ std::vector<FilmShot> shotsOf(const FilmSettings& settings, const std::vector<Ca
     return shots;
 }
 
-void checkFilm(const FilmTask& task) {
-    if (task.path.empty()) throw UsageError("the film has no name", "", "name a file that ends in .mp4, or a folder");
-    if (isMovie(task.path) && !hasMovieWriter())
-        throw Error("ffmpeg, which writes films, is not installed", task.path,
-                    "install it, or name a folder, which gets the pictures one by one");
-    if (task.scene.session.field->kind)
-        throw Error("a film shows the data, and a field is shown in their place", task.scene.volume->title,
-                    "switch the field off");
-    if (!isMovie(task.path) && fs::exists(task.path) && !fs::is_directory(task.path))
-        throw FileError("this is no folder, and does not end in .mp4", task.path,
-                        "name a file that ends in .mp4, or a folder");
-    RenderSettings size;
-    size.width = task.width;
-    size.height = task.height;
-    size.validate();
+std::vector<FilmShot> shotsOf(const Keyframes& keys, double framesPerSecond, const Geometry& geometry) {
+    if (keys.empty()) throw UsageError("the film has no keys", "", "add a key");
+    const double begin = keys.front().time, pictures = (keys.back().time - begin) * framesPerSecond;
+    checkCount(pictures + 1);
+    std::vector<FilmShot> shots;
+    const int last = static_cast<int>(pictures + 1e-6);
+    for (int n = 0; n <= last; ++n) {
+        const double time = begin + n / framesPerSecond;
+        shots.push_back({frameAt(keys, time), cameraAt(keys, time, geometry), time});
+    }
+    return shots;
 }
 
 std::string pictureName(int picture) {
@@ -248,20 +262,128 @@ std::string pictureFileOf(const std::string& path, int picture) {
     return (fs::path(path) / pictureName(picture)).string();
 }
 
+std::string picturesFolderOf(const std::string& path) {
+    return filmFileOf(path) == FilmFile::Pictures ? path : path + ".pictures";
+}
+
+std::optional<UnfinishedFilm> unfinishedFilm(const FilmTask& task) {
+    const std::string folder = picturesFolderOf(task.path);
+    const auto digest = readFilmProgress(folder);
+    if (!digest) return {};
+    UnfinishedFilm film{0, *digest == filmDigest(task)};
+    const int all = static_cast<int>(task.shots.size());
+    while (film.pictures < all && fs::is_regular_file(pictureFileOf(folder, film.pictures))) ++film.pictures;
+    return film;
+}
+
+void checkFilm(const FilmTask& task) {
+    if (task.path.empty()) throw UsageError("the film has no name", "", "name a file that ends in .mp4, or a folder");
+    const FilmFile file = filmFileOf(task.path);
+    if (needsMovieWriter(file) && !hasMovieWriter())
+        throw Error("ffmpeg, which writes films, is not installed", task.path,
+                    "install it, or name a file that ends in .apng, or a folder, which gets the pictures one by one");
+    if (task.scene.session.field->kind)
+        throw Error("a film shows the data, and a field is shown in their place", task.scene.volume->title,
+                    "switch the field off");
+    const std::string folder = picturesFolderOf(task.path);
+    if (fs::exists(folder) && !fs::is_directory(folder))
+        throw FileError("this is no folder, and its suffix is that of no film", folder,
+                        "name a file that ends in .mp4, .webm, .gif or .apng, or a folder");
+    if (file != FilmFile::Pictures && fs::is_directory(task.path))
+        throw FileError("this is a folder, and a film would be a file", task.path, "give another name");
+    if (file != FilmFile::Pictures && fs::exists(folder) && !fs::is_empty(folder) && !readFilmProgress(folder))
+        throw FileError("the pictures of the film would come into this folder, and there are others in it", folder,
+                        "move the folder, or give the film another name");
+    RenderSettings size;
+    size.width = task.width;
+    size.height = task.height;
+    size.validate();
+    if (!task.resume) return;
+    if (const auto unfinished = unfinishedFilm(task); unfinished && !unfinished->isThisOne)
+        throw Error("another film was begun here", folder, "begin anew, or give this film another name");
+}
+
+namespace {
+
+/// The folder of the pictures while a film is drawn.
+class PictureStore {
+public:
+    explicit PictureStore(const FilmTask& task)
+        : m_task(task), m_isFile(filmFileOf(task.path) != FilmFile::Pictures), m_folder(picturesFolderOf(task.path)) {
+        std::error_code failure;
+        fs::create_directories(m_folder, failure);
+        if (failure && !fs::is_directory(m_folder))
+            throw FileError("the folder cannot be created: " + failure.message(), m_folder,
+                            "check permissions and space");
+        m_resumes = task.resume && readFilmProgress(m_folder);
+    }
+    ~PictureStore() {
+        std::error_code none;
+        if (m_isFile && m_files.empty()) fs::remove(m_folder, none); // an empty one only
+    }
+    PictureStore(const PictureStore&) = delete;
+    PictureStore& operator=(const PictureStore&) = delete;
+
+    const std::vector<std::string>& files() const { return m_files; }
+    int kept() const { return m_kept; }
+
+    /// Whether the next picture is there already.
+    bool keepNext() {
+        const std::string file = next();
+        if (!m_resumes || !isWholePngFile(file, m_task.width, m_task.height)) return false;
+        m_files.push_back(file);
+        ++m_kept;
+        return true;
+    }
+    void add(const Image& image) {
+        if (!m_resumes && m_files.empty()) begin();
+        const std::string file = next();
+        writeImage(image, file);
+        m_files.push_back(file);
+    }
+    /// The film is whole: it needs no more what it was made with.
+    void finish() {
+        if (m_isFile) removePictures();
+        removeFilmProgress(m_folder);
+        std::error_code none;
+        if (m_isFile) fs::remove(m_folder, none);
+    }
+
+private:
+    std::string next() const { return pictureFileOf(m_folder, static_cast<int>(m_files.size())); }
+    /// What this film will write over goes first: none of it shall be taken for a picture of this film.
+    void begin() {
+        removeFilmProgress(m_folder);
+        removePictures();
+        writeFilmProgress(filmDigest(m_task), m_folder);
+    }
+    /// Of a folder beside a film all, else those of this film's numbers.
+    void removePictures() {
+        const auto remove = [&](std::size_t n) {
+            std::error_code none;
+            return fs::remove(pictureFileOf(m_folder, static_cast<int>(n)), none);
+        };
+        std::size_t n = 0;
+        for (; n < m_task.shots.size(); ++n) remove(n);
+        while (m_isFile && remove(n)) ++n;
+    }
+
+    const FilmTask& m_task;
+    const bool m_isFile;
+    const std::string m_folder;
+    bool m_resumes = false;
+    std::vector<std::string> m_files;
+    int m_kept = 0;
+};
+
+} // namespace
+
 FilmResult makeFilm(const FilmTask& task, const JobControl& job) {
     checkFilm(task);
-    const bool movie = isMovie(task.path);
-    std::optional<ScratchFolder> scratch;
-    if (movie) scratch.emplace(task.path);
-    const std::string folder = movie ? scratch->path() : task.path;
-    std::error_code failure;
-    fs::create_directories(folder, failure);
-    if (failure && !fs::is_directory(folder))
-        throw FileError("the folder cannot be created: " + failure.message(), folder, "check permissions and space");
+    PictureStore store(task);
     Frames frames(task.scene);
     Artist artist(task);
     FilmResult result;
-    std::vector<std::string> files;
     int broken = -1; // the frame that could not be read last
     for (std::size_t n = 0; n < task.shots.size(); ++n) {
         job.throwIfStopped();
@@ -273,15 +395,18 @@ FilmResult makeFilm(const FilmTask& task, const JobControl& job) {
             result.passedOver.push_back("frame " + std::to_string(broken) + ": " + frames.why());
             continue;
         }
-        files.push_back(pictureFileOf(folder, static_cast<int>(files.size())));
-        writeImage(artist.draw(*scene, shot.camera, job), files.back());
+        if (!store.keepNext()) store.add(artist.draw(*scene, shot, job));
         // The film itself takes a little time, too.
         job.report(0.97 * static_cast<double>(n + 1) / static_cast<double>(task.shots.size()));
     }
-    if (files.empty()) throw Error("no frame can be read", task.scene.series->listing().title, "check its files");
-    if (movie) writeMovie(files, task.framesPerSecond, task.path, job.stop);
+    if (store.files().empty())
+        throw Error("no frame can be read", task.scene.series->listing().title, "check its files");
+    if (filmFileOf(task.path) != FilmFile::Pictures)
+        writeMovie(store.files(), task.framesPerSecond, task.path, job.stop);
     job.report(1);
-    result.pictures = static_cast<int>(files.size());
+    result.pictures = static_cast<int>(store.files().size());
+    result.kept = store.kept();
+    store.finish();
     return result;
 }
 

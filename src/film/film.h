@@ -1,12 +1,14 @@
 // Films of a scene: which picture comes when, and the pictures as files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/enum_names.h"
 #include "base/job.h"
 #include "base/setting.h"
+#include "film/keyframes.h"
 #include "session/scene.h"
 
 namespace pellucid {
@@ -14,10 +16,11 @@ namespace pellucid {
 enum class FilmKind {
     Turntable, ///< once around the volume
     Series,    ///< each frame of the series, from the present view
-    Views      ///< from view to view
+    Views,     ///< from view to view
+    Keys       ///< from key to key, see keyframes.h
 };
 template <>
-inline constexpr auto kNamesOf<FilmKind> = enumNames("film", "turntable", "series", "views");
+inline constexpr auto kNamesOf<FilmKind> = enumNames("film", "turntable", "series", "views", "keyframes");
 
 struct FilmSettings {
     FilmKind kind = FilmKind::Turntable;
@@ -35,6 +38,7 @@ inline constexpr int kMostFilmPictures = 100'000;
 struct FilmShot {
     int frame = 0; ///< of the series
     Camera camera;
+    std::optional<double> time = {}; ///< s, of FilmKind::Keys: the keys say what is seen, and from where
 };
 
 /// Between two cameras of one projection, t from 0 to 1: the center goes straight from one to the other, the eye around
@@ -49,6 +53,9 @@ std::vector<Camera> viewsOfText(const std::string& text, const Scene& scene);
 /// ends one picture before it is where it began, so that the film can be repeated. `views` count for FilmKind::Views
 /// alone. Throws UsageError without a place: of a series where there is none, of more than kMostFilmPictures.
 std::vector<FilmShot> shotsOf(const FilmSettings& settings, const std::vector<Camera>& views, const Scene& scene);
+/// From the first key to the last, both included where their distance is a number of whole pictures. Throws likewise,
+/// and without keys.
+std::vector<FilmShot> shotsOf(const Keyframes& keys, double framesPerSecond, const Geometry& geometry);
 
 struct FilmTask {
     Scene scene;
@@ -56,21 +63,38 @@ struct FilmTask {
     int width = 1280, height = 720; ///< pixels
     double framesPerSecond = 25;
     AnnotationChoice around = AnnotationChoice::none(); ///< what stands around each picture
-    std::string path = {}; ///< F.mp4, or a folder, new or not: it gets picture_00000.png …
+    /// A film (FilmFile), or a folder, new or not: it gets picture_00000.png …
+    std::string path = {};
+    Keyframes keys = {}; ///< of shots that have a time
+    /// Pictures of this film that were drawn before it was stopped are taken as they are.
+    bool resume = false;
 };
 
 struct FilmResult {
     int pictures = 0;
+    int kept = 0;                        ///< of these that were there already
     std::vector<std::string> passedOver; ///< frames that could not be read: "frame 3: …"
 };
 
 /// What can be told before any work: throws Error where a film is wanted and no ffmpeg is there, where the session
-/// shows a field in the place of the data, and for a size that is none.
+/// shows a field in the place of the data, for a size that is none, and to resume where another film was begun.
 void checkFilm(const FilmTask& task);
 std::string pictureName(int picture);                            ///< "picture_00012.png"
 std::string pictureFileOf(const std::string& path, int picture); ///< that in the folder `path`
-/// Draws and writes it. A film is whole or absent; of pictures those that were drawn stay. Throws as checkFilm() does,
-/// FileError, Error where no frame can be read, Cancelled.
+/// Where the pictures lie while the film is drawn: "F.mp4.pictures" beside a film, else the folder itself.
+std::string picturesFolderOf(const std::string& path);
+
+/// A film that was stopped before it was whole.
+struct UnfinishedFilm {
+    int pictures = 0;      ///< that were drawn
+    bool isThisOne = true; ///< and not another one, which has the same name
+};
+/// Empty: none was stopped there.
+std::optional<UnfinishedFilm> unfinishedFilm(const FilmTask& task);
+
+/// Draws and writes it. A film is whole or absent. Pictures that were drawn stay where it is stopped or fails, with
+/// what is needed to resume it; a film that is resumed has the same bytes as one that never stopped. Throws as
+/// checkFilm() does, FileError, Error where no frame can be read, Cancelled.
 FilmResult makeFilm(const FilmTask& task, const JobControl& job = {});
 
 } // namespace pellucid

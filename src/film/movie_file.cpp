@@ -1,6 +1,8 @@
 #include "film/movie_file.h"
 
+#include <array>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -13,6 +15,7 @@
 #include "base/file_watch.h"
 #include "base/round_numbers.h"
 #include "base/text.h"
+#include "image_io/animated_png.h"
 
 namespace pellucid {
 
@@ -33,11 +36,68 @@ std::string findProgram() {
     return {};
 }
 
-/// In single quotes, as ffmpeg reads them.
-std::string quoted(const std::string& text) {
-    std::string all = "'";
-    for (const char c : text) all += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return all + "'";
+/// The pictures under names that count, which ffmpeg reads as a sequence.
+void linkPictures(const std::vector<std::string>& pictures, const ScratchFolder& scratch) {
+    int number = 0;
+    for (const std::string& picture : pictures) {
+        std::array<char, 32> name{};
+        std::snprintf(name.data(), name.size(), "%06d.png", number++);
+        const fs::path link = scratch.file(name.data()), file = fs::absolute(picture);
+        std::error_code failed;
+        fs::create_symlink(file, link, failed);
+        if (failed) fs::copy_file(file, link, failed); // where there are no links
+        if (failed) throw FileError("it cannot be read: " + failed.message(), picture, "check permissions and space");
+    }
+}
+
+class FfmpegWords {
+public:
+    FfmpegWords& add(const char* options) {
+        for (std::string& word : splitWords(options)) words.push_back(std::move(word));
+        return *this;
+    }
+    FfmpegWords& add(const char* options, const std::string& value) {
+        add(options);
+        words.push_back(value);
+        return *this;
+    }
+    std::vector<std::string> words;
+};
+
+FfmpegWords reading(double framesPerSecond) {
+    FfmpegWords words;
+    // As many threads everywhere: their number changes what some encoders write.
+    words.add("-nostdin -y -loglevel error -framerate", plainText(framesPerSecond)).add("-i %06d.png");
+    return words;
+}
+
+/// From sRGB to what nearly all players take films for.
+void addVideoColors(FfmpegWords& words) {
+    words
+        .add("-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,"
+                    "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,format=yuv420p")
+        .add("-colorspace bt709 -color_primaries bt709 -color_trc bt709 -color_range tv");
+}
+
+/// What ffmpeg is asked for, one call after the other; the last one writes `film`.
+std::vector<FfmpegWords> callsFor(FilmFile file, double framesPerSecond, const std::string& film) {
+    std::vector<FfmpegWords> calls;
+    FfmpegWords words = reading(framesPerSecond);
+    if (file == FilmFile::Gif) {
+        calls.push_back(words);
+        calls.back().add("-vf palettegen=stats_mode=full -frames:v 1 -fflags +bitexact palette.bmp");
+        // Dots of a fixed pattern: others would swarm from picture to picture.
+        words.add("-i palette.bmp -lavfi [0:v][1:v]paletteuse=dither=bayer:bayer_scale=5 -loop 0");
+    } else {
+        addVideoColors(words);
+        words.add(file == FilmFile::WebM
+                      ? "-c:v libvpx-vp9 -crf 20 -b:v 0 -deadline good -cpu-used 2 -tile-columns 1 -threads 4"
+                      : "-c:v libx264 -crf 16 -threads 4 -movflags +faststart");
+        words.add("-flags:v +bitexact");
+    }
+    words.add("-fflags +bitexact", film);
+    calls.push_back(std::move(words));
+    return calls;
 }
 
 } // namespace
@@ -55,39 +115,50 @@ ScratchFolder::~ScratchFolder() {
     fs::remove_all(m_folder, none);
 }
 
-bool isMovie(const std::string& path) { return lowerCase(fs::path(path).extension().string()) == ".mp4"; }
+FilmFile filmFileOf(const std::string& path) {
+    const std::string suffix = lowerCase(fs::path(path).extension().string());
+    if (suffix == ".mp4") return FilmFile::Mp4;
+    if (suffix == ".webm") return FilmFile::WebM;
+    if (suffix == ".gif") return FilmFile::Gif;
+    return suffix == ".apng" || suffix == ".png" ? FilmFile::AnimatedPng : FilmFile::Pictures;
+}
+
+bool needsMovieWriter(FilmFile file) {
+    return file == FilmFile::Mp4 || file == FilmFile::WebM || file == FilmFile::Gif;
+}
+
+bool isMovie(const std::string& path) { return filmFileOf(path) == FilmFile::Mp4; }
 
 bool hasMovieWriter() { return !findProgram().empty(); }
 
 void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond, const std::string& path,
                 const std::stop_token& stop) {
     if (pictures.empty()) return;
+    const FilmFile file = filmFileOf(path);
+    if (file == FilmFile::AnimatedPng) return writeAnimatedPng(pictures, framesPerSecond, path, stop);
     tellOfWriting(path);
     const ScratchFolder scratch(path);
-    const std::string pictureList = scratch.file("pictures.txt"), film = scratch.file("film.mp4");
-    std::string list = "ffconcat version 1.0\n";
-    const std::string duration = "duration " + plainText(1 / framesPerSecond) + "\n";
-    for (const std::string& picture : pictures)
-        list += "file " + quoted(fs::absolute(picture).string()) + "\n" + duration;
-    writeTextAtomically(pictureList, list);
-    std::vector<std::string> words;
-    const auto add = [&](const std::string& options, const std::string& value) {
-        for (std::string& word : splitWords(options)) words.push_back(std::move(word));
-        words.push_back(value);
-    };
-    add("-nostdin -y -loglevel error -f concat -safe 0 -i", pictureList);
-    add("-r", plainText(framesPerSecond));
-    add("-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 18 -pix_fmt yuv420p", film);
-    // Killed where it is stopped: what it has made by then is of no use.
-    const ChildEnd end = runChild({.program = findProgram(), .words = words, .stopBy = SIGKILL}, stop);
+    linkPictures(pictures, scratch);
+    const std::string name = "film" + lowerCase(fs::path(path).extension().string());
+    std::string said;
+    bool finished = true;
+    for (const FfmpegWords& call : callsFor(file, framesPerSecond, name)) {
+        // Killed where it is stopped: what it has made by then is of no use.
+        const ChildEnd end = runChild(
+            {.program = findProgram(), .words = call.words, .folder = scratch.path(), .stopBy = SIGKILL}, stop);
+        said = joined(splitWords(end.error.substr(0, 300)), " "); // on one line
+        finished = end.status == 0;
+        if (!finished) break;
+    }
     std::error_code failed;
-    if (end.status == 0 && fs::is_regular_file(film)) {
+    const std::string film = scratch.file(name.c_str());
+    if (finished && fs::is_regular_file(film)) {
         fs::rename(film, path, failed);
         if (!failed) return;
     }
-    const std::string said = joined(splitWords(end.error.substr(0, 300)), " "); // on one line
     throw Error("ffmpeg failed" + (said.empty() ? std::string() : ": " + said), path,
-                "check that ffmpeg has libx264; pictures alone need no ffmpeg");
+                "check that ffmpeg has libx264 or libvpx-vp9; a name that ends in .apng, and pictures alone, need no "
+                "ffmpeg");
 }
 
 } // namespace pellucid

@@ -22,11 +22,23 @@ private:
     std::string m_folder;
 };
 
+/// What a film is written as, by the suffix of its name.
+enum class FilmFile {
+    Pictures,   ///< a folder of PNG files
+    Mp4,        ///< H.264, by ffmpeg
+    WebM,       ///< VP9, by ffmpeg
+    Gif,        ///< 256 colours, by ffmpeg
+    AnimatedPng ///< .apng, .png: lossless, by our own code
+};
+FilmFile filmFileOf(const std::string& path);
+bool needsMovieWriter(FilmFile file);  ///< ffmpeg
 bool isMovie(const std::string& path); ///< whether it ends in .mp4
 bool hasMovieWriter();                 ///< whether there is an ffmpeg in PATH
 
-/// H.264 in `path`, `framesPerSecond` pictures a second; a line is added to pictures of odd sizes. The film is whole or
-/// absent. Throws Error with what ffmpeg says where it fails, Cancelled.
+/// A film of PNG files of one size in `path`, `framesPerSecond` pictures a second. To pictures of odd sizes MP4 and
+/// WebM add a line; their colours are those of BT.709 in video range, and say so. The same pictures give the same bytes
+/// with the same ffmpeg. The film is whole or absent. Throws Error with what ffmpeg says where it fails, FileError,
+/// Cancelled.
 void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond, const std::string& path,
                 const std::stop_token& stop);
 

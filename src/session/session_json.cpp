@@ -717,6 +717,12 @@ Run toRun(const JsonValue& j) {
 
 } // namespace
 
+json jsonFromWholeCamera(const Camera& camera) { return fromCamera(camera); }
+json jsonFromClipping(const Clipping& clipping) { return fromClipping(clipping); }
+Clipping clippingFromJson(const JsonValue& j) { return toClipping(j); }
+json jsonFromLight(const Light& light) { return fromLight(light); }
+Light lightFromJson(const JsonValue& j) { return toLight(j); }
+
 json jsonFromSession(const Session& s, const std::string& folder, DataPaths paths) {
     json j{{"format", kFormat},
            {"version", kVersion},

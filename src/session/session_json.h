@@ -33,4 +33,12 @@ void writeSession(const Session& session, const std::string& path, DataPaths pat
 nlohmann::json jsonFromSession(const Session& session, const std::string& folder, DataPaths paths);
 SessionFile sessionFromJson(const JsonValue& document, const std::string& folder);
 
+/// Parts as sessions and films have them. Readers throw Error with the place. Cameras say what the other projection
+/// would take up again, too.
+nlohmann::json jsonFromWholeCamera(const Camera& camera);
+nlohmann::json jsonFromClipping(const Clipping& clipping);
+Clipping clippingFromJson(const JsonValue& json);
+nlohmann::json jsonFromLight(const Light& light);
+Light lightFromJson(const JsonValue& json);
+
 } // namespace pellucid

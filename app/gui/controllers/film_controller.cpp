@@ -86,7 +86,8 @@ void FilmController::choose() {
             showErrorFirst(m_services.window(), tr("Cannot save the film"), error);
             continue;
         }
-        const QString first = isMovie(task.path) ? chosen.path : QString::fromStdString(pictureFileOf(task.path, 0));
+        const bool isFolder = filmFileOf(task.path) == FilmFile::Pictures;
+        const QString first = isFolder ? QString::fromStdString(pictureFileOf(task.path, 0)) : chosen.path;
         if (!mayReplaceFile(m_services.window(), first, tr("Save film"))) continue;
         keepFolderOf("filmFolder", chosen.path);
         return save(task);

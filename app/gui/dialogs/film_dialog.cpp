@@ -39,8 +39,9 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
                     tr("Views with semicolons between: sides such as anterior, left, top; azimuth, elevation and\n"
                        "magnification such as 30,20,1.5; or present for the view of the window"))),
       m_path(named(new QLineEdit(offered.path, this), "filmPath",
-                   tr("A name that ends in .mp4 makes a film, for which ffmpeg must be installed; any other is a\n"
-                      "folder, which gets the pictures one by one: picture_00000.png and so on"))),
+                   tr("A name that ends in .mp4, .webm or .gif makes a film, for which ffmpeg must be installed, one\n"
+                      "in .apng an animated picture without loss; any other is a folder, which gets the pictures one\n"
+                      "by one: picture_00000.png and so on"))),
       m_width(named(new QSpinBox(this), "filmWidth")), m_height(named(new QSpinBox(this), "filmHeight")),
       m_annotated(named(new QCheckBox(tr("With &annotations"), this), "filmAnnotated",
                         tr("What the window shows around the picture: View → Annotations"))),
@@ -48,12 +49,14 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
     setObjectName("filmDialog");
     setWindowTitle(tr("Save film"));
     for (const char* kind : filmSetting("kind").choices) m_kind->addItem(tr(kind));
-    if (series == 0) {
+    const auto leaveOut = [this](FilmKind kind, const QString& why) {
         auto* const model = qobject_cast<QStandardItemModel*>(m_kind->model());
-        QStandardItem* const item = model->item(static_cast<int>(FilmKind::Series));
+        QStandardItem* const item = model->item(static_cast<int>(kind));
         item->setEnabled(false);
-        item->setToolTip(tr("The data have one frame"));
-    }
+        item->setToolTip(why);
+    };
+    if (series == 0) leaveOut(FilmKind::Series, tr("The data have one frame"));
+    leaveOut(FilmKind::Keys, tr("pellucid-cli film makes films of keyframes"));
     m_kind->setCurrentIndex(static_cast<int>(offered.settings.kind));
     m_annotated->setEnabled(annotated);
     m_annotated->setChecked(annotated);
@@ -67,8 +70,8 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
     connect(browseButton, &QPushButton::clicked, this, &FilmDialog::browse);
 
     auto* const note = wrappedLabel("filmFormats", this);
-    note->setText(tr("A name that ends in .mp4 makes a film, which needs ffmpeg. Any other name makes a folder of "
-                     "pictures."));
+    note->setText(tr("Names that end in .mp4, .webm or .gif make a film, which needs ffmpeg; .apng needs none. Any "
+                     "other name makes a folder of pictures."));
     makeFaint(*note);
     auto* const form = inset(new QFormLayout(this), {18, 16, 18, 12});
     form->setVerticalSpacing(9);
@@ -141,9 +144,9 @@ void FilmDialog::addPresentView() {
 }
 
 void FilmDialog::browse() {
-    const QString chosen =
-        QFileDialog::getSaveFileName(this, tr("Save film"), m_path->text(), tr("Films (*.mp4);;Folder of pictures (*)"),
-                                     nullptr, QFileDialog::DontConfirmOverwrite);
+    const QString chosen = QFileDialog::getSaveFileName(this, tr("Save film"), m_path->text(),
+                                                        tr("Films (*.mp4 *.webm *.gif *.apng);;Folder of pictures (*)"),
+                                                        nullptr, QFileDialog::DontConfirmOverwrite);
     if (!chosen.isEmpty()) m_path->setText(chosen);
 }
 

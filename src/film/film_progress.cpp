@@ -1,0 +1,102 @@
+#include "film/film_progress.h"
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/json_file.h"
+#include "base/json_value.h"
+#include "film/keyframes_file.h"
+#include "session/session_json.h"
+#include "tf/formats/tf_json.h"
+
+namespace pellucid {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kFormat = "pellucid-film-progress";
+constexpr int kVersion = 1;
+
+/// FNV-1a of 64 bits.
+class Hash {
+public:
+    void add(const json& j) {
+        // Names of files need not be UTF-8.
+        for (const char c : j.dump(-1, ' ', false, json::error_handler_t::replace) + "\n") {
+            m_value ^= static_cast<unsigned char>(c);
+            m_value *= 0x100000001b3u;
+        }
+    }
+    std::string text() const {
+        std::array<char, 17> digits{};
+        std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(m_value));
+        return digits.data();
+    }
+
+private:
+    std::uint64_t m_value = 0xcbf29ce484222325u;
+};
+
+/// What is decided of the pictures; what is kept beside it changes none.
+json picturePart(const Scene& scene) {
+    json j = jsonFromSession(scene.session, {}, DataPaths::Absolute);
+    for (const char* other : {"runs", "comparison", "target_keys", "features", "optimize", "refine", "slices",
+                              "picture_saliency", "hold_targets", "density", "field", "camera", "reference"})
+        j.erase(other);
+    return j;
+}
+
+} // namespace
+
+std::string filmDigest(const FilmTask& task) {
+    Hash hash;
+    hash.add({{"program", PELLUCID_VERSION},
+              {"size", {task.width, task.height}},
+              {"title", task.scene.volume->title},
+              {"tf", jsonFromTf(task.scene.tf)},
+              {"around", task.around.any() ? task.around.on : false}});
+    hash.add(picturePart(task.scene));
+    for (const AnnotationPartInfo& part : kAnnotationParts) hash.add(task.around.*part.shown);
+    hash.add(jsonFromKeyframes(task.keys));
+    for (const FilmShot& shot : task.shots)
+        hash.add(shot.time ? json(*shot.time)
+                           : json{{"frame", shot.frame}, {"camera", jsonFromWholeCamera(shot.camera)}});
+    return hash.text();
+}
+
+std::optional<std::string> readFilmProgress(const std::string& folder) {
+    const std::string path = (fs::path(folder) / kFilmProgressFile).string();
+    if (std::error_code none; !fs::is_regular_file(path, none)) return {};
+    try {
+        // Not as an input of the program: it is an output, too.
+        std::ifstream in(path, std::ios::binary);
+        const json document = parseJson({std::istreambuf_iterator<char>(in), {}}, path);
+        const JsonValue j(document, path);
+        requireFormat(j, kFormat, kVersion, "draw the film anew");
+        return j["digest"].text();
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+void writeFilmProgress(const std::string& digest, const std::string& folder) {
+    const json j{{"format", kFormat}, {"version", kVersion}, {"digest", digest}};
+    writeTextAtomically((fs::path(folder) / kFilmProgressFile).string(), j.dump() + "\n");
+}
+
+void removeFilmProgress(const std::string& folder) {
+    std::error_code none;
+    fs::remove(fs::path(folder) / kFilmProgressFile, none);
+}
+
+} // namespace pellucid
