@@ -9,6 +9,10 @@ themselves, and --keep keeps them. The same --seed makes the same files. Exit st
 
     mutate_foreign.py build/release/bin/pellucid-cli --count 2000 --jobs 4 --keep found
 
+Instead of pellucid-cli, which is started for each file, it takes open_files, which opens them all in one process, and
+starts a reader of foreign formats for each: for builds with sanitizers. A finding of a sanitizer in a reader is
+something found, too.
+
 Needs Debian's python3-pydicom, python3-tifffile, python3-h5py, python3-netcdf4 and python3-zarr.
 """
 
@@ -25,6 +29,8 @@ import subprocess
 import sys
 import tempfile
 import zlib
+
+from opener import Opener, is_opener, line_fault
 
 SHAPE = (4, 6, 8)  # z, y, x
 
@@ -365,10 +371,35 @@ def prepare(options):
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
+g_opener = None
+
+
+def opened(path):
+    """run_on() by open_files."""
+    global g_opener
+    if g_opener is None:
+        g_opener = Opener(g_options.program, g_options.cpu, g_options.timeout)
+    answer = g_opener.open(path)
+    ended = "read" if answer.status == 0 else "crashed" if "crashed on it" in answer.said else "refused"
+    if answer.status < 0:
+        wrong = "the program ended (%d): %s" % (answer.status, answer.said)
+    elif answer.cpu > g_options.cpu:
+        wrong = "%.1f s of computing" % answer.cpu
+    elif answer.mib > g_options.memory:
+        wrong = "%.0f MiB of the heap" % answer.mib
+    elif "(status 99)" in answer.said:
+        wrong = "a sanitizer ended the reader: " + answer.said
+    else:
+        wrong = line_fault(answer.said) if answer.status else ""
+    return ended, wrong, answer.said[-400:]
+
+
 def run_on(seed, number):
     """(how it ended, what is wrong): "read", "refused" or "crashed"."""
     with tempfile.TemporaryDirectory(dir=g_options.folder) as folder:
         path = write_files(os.path.join(folder, "in"), seed)
+        if is_opener(g_options.program):
+            return opened(path)
         result = os.path.join(folder, "out.nrrd") if number % 4 == 3 else None
         command = ["convert", path, "--out", result] if result else ["info", "--json", path]
         run = Run([g_options.program] + command + ["--memory", "1"], folder, g_options.timeout)
@@ -389,7 +420,7 @@ def try_one(case):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", help="pellucid-cli")
+    parser.add_argument("program", help="pellucid-cli, or open_files")
     parser.add_argument("--count", type=int, default=2000, help="damaged files per format (default 2000)")
     parser.add_argument("--first", type=int, default=0, help="number of the first one, to go on later (default 0)")
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (default 1)")
