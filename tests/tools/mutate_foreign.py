@@ -9,9 +9,10 @@ themselves, and --keep keeps them. The same --seed makes the same files. Exit st
 
     mutate_foreign.py build/release/bin/pellucid-cli --count 2000 --jobs 4 --keep found
 
-Instead of pellucid-cli, which is started for each file, it takes open_files, which opens them all in one process, and
-starts a reader of foreign formats for each: for builds with sanitizers. A finding of a sanitizer in a reader is
-something found, too.
+Instead of pellucid-cli, which is started for each file, it takes open_files, which opens them all in one process and
+starts a reader of foreign formats for each, and open_foreign (open_foreign_dicom and so on have to be there), which
+does what a reader does, for all files in one process: for builds with sanitizers. A finding of these is something found,
+in a reader, too.
 
 Needs Debian's python3-pydicom, python3-tifffile, python3-h5py, python3-netcdf4 and python3-zarr.
 """
@@ -371,35 +372,52 @@ def prepare(options):
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-g_opener = None
+READERS = {"dicom": "dicom", "tiff": "tiff", "png": "images", "hdf5": "arrays", "netcdf": "arrays", "zarr": "arrays"}
+g_openers = {}
 
 
-def opened(path):
-    """run_on() by open_files."""
-    global g_opener
-    if g_opener is None:
-        g_opener = Opener(g_options.program, g_options.cpu, g_options.timeout)
-    answer = g_opener.open(path)
-    ended = "read" if answer.status == 0 else "crashed" if "crashed on it" in answer.said else "refused"
-    if answer.status < 0:
+def is_alone():
+    """Without the limit on memory that a reader has: what a library takes in all is not looked at."""
+    return os.path.basename(g_options.program) == "open_foreign"
+
+
+def opener_for(name):
+    """open_files, or the open_foreign of this format; begun once."""
+    key = READERS[name] if is_alone() else ""
+    if key not in g_openers:
+        words = [g_options.program + "_" + key] if is_alone() else [g_options.program, "--memory", "1"]
+        g_openers[key] = Opener(words, g_options.timeout)
+    return g_openers[key]
+
+
+def is_from_sanitizer(said):
+    return any(mark in said for mark in ("ERROR: AddressSanitizer", "runtime error:", "(status 99)"))
+
+
+def opened(name, path):
+    """run_on() by these. A library may end open_foreign as it may end a reader."""
+    answer = opener_for(name).open(path)
+    has_ended = "crashed on it" in answer.said or (answer.status < 0 and not is_from_sanitizer(answer.said) and is_alone())
+    ended = "crashed" if has_ended else "read" if answer.status == 0 else "refused"
+    if is_from_sanitizer(answer.said):
+        wrong = "a sanitizer: " + answer.said
+    elif answer.status < 0 and (not has_ended or "still runs" in answer.said):
         wrong = "the program ended (%d): %s" % (answer.status, answer.said)
     elif answer.cpu > g_options.cpu:
         wrong = "%.1f s of computing" % answer.cpu
-    elif answer.mib > g_options.memory:
+    elif answer.mib > g_options.memory and not is_alone():
         wrong = "%.0f MiB of the heap" % answer.mib
-    elif "(status 99)" in answer.said:
-        wrong = "a sanitizer ended the reader: " + answer.said
     else:
-        wrong = line_fault(answer.said) if answer.status else ""
-    return ended, wrong, answer.said[-400:]
+        wrong = line_fault(answer.said) if answer.status == 1 else ""
+    return ended, wrong, answer.said[-400:].replace("\n", " ")
 
 
-def run_on(seed, number):
+def run_on(name, seed, number):
     """(how it ended, what is wrong): "read", "refused" or "crashed"."""
     with tempfile.TemporaryDirectory(dir=g_options.folder) as folder:
         path = write_files(os.path.join(folder, "in"), seed)
         if is_opener(g_options.program):
-            return opened(path)
+            return opened(name, path)
         result = os.path.join(folder, "out.nrrd") if number % 4 == 3 else None
         command = ["convert", path, "--out", result] if result else ["info", "--json", path]
         run = Run([g_options.program] + command + ["--memory", "1"], folder, g_options.timeout)
@@ -412,7 +430,7 @@ def try_one(case):
     name, number = case
     rng = random.Random("%s/%s/%d" % (g_options.seed, name, number))
     seed = mutated(rng, g_seeds[name])
-    ended, wrong, said = run_on(seed, number)
+    ended, wrong, said = run_on(name, seed, number)
     if (wrong or ended == "crashed") and g_options.keep:
         write_files(os.path.join(g_options.keep, "%s-%d" % (name, number)), seed)
     return name, number, ended, wrong, said
@@ -420,7 +438,7 @@ def try_one(case):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", help="pellucid-cli, or open_files")
+    parser.add_argument("program", help="pellucid-cli, open_files or open_foreign")
     parser.add_argument("--count", type=int, default=2000, help="damaged files per format (default 2000)")
     parser.add_argument("--first", type=int, default=0, help="number of the first one, to go on later (default 0)")
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (default 1)")
@@ -433,7 +451,8 @@ def main():
     parser.add_argument("--keep", help="a folder for the files that were found to go wrong, or that crash a library")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
-    if not os.access(options.program, os.X_OK):
+    alone = os.path.basename(options.program) == "open_foreign"
+    if not os.access(options.program + ("_dicom" if alone else ""), os.X_OK):
         parser.error("no program: " + options.program)
     names = options.formats.split(",")
     if options.count < 1 or options.jobs < 1 or any(name not in FORMATS for name in names):
@@ -452,7 +471,7 @@ def main():
         prepare(options)
         for name in names:
             for number, seed in enumerate(g_seeds[name]):
-                ended, wrong, said = run_on(seed, 0)
+                ended, wrong, said = run_on(name, seed, 0)
                 if wrong or ended != "read":
                     failed.append("%s, seed %d: %s" % (name, number, wrong or said))
         cases = [(name, options.first + number) for number in range(options.count) for name in names]

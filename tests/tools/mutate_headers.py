@@ -448,7 +448,7 @@ def fault_of_opening(options, path):
     """The same of open_files."""
     global g_opener
     if g_opener is None:
-        g_opener = Opener(options.program, options.cpu, options.timeout)
+        g_opener = Opener([options.program, "--memory", "1"], options.timeout)
     answer = g_opener.open(path)
     if answer.status < 0:
         return False, "the program ended (%d): %s" % (answer.status, answer.said)

@@ -1,4 +1,4 @@
-"""Has `open_files` open one file after the other, for the programs beside this one that damage files."""
+"""Has `open_files` and `open_foreign` open one file after the other, for the programs beside this one that damage files."""
 
 import json
 import os
@@ -7,10 +7,15 @@ import signal
 import subprocess
 import tempfile
 import time
+import unicodedata
+
+
+# Marks of direction, embeddings, overrides and isolates.
+TURNS = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
 
 
 def is_opener(program):
-    return os.path.basename(program) == "open_files"
+    return os.path.basename(program) in ("open_files", "open_foreign")
 
 
 class Answer:
@@ -23,10 +28,10 @@ class Answer:
 
 
 class Opener:
-    """One open_files, begun again where a file has ended it: that file is the one that was being read."""
+    """One of these programs, begun again where a file has ended it: that file is the one that was being read."""
 
-    def __init__(self, program, cpu_seconds, wall_seconds):
-        self.program, self.cpu, self.wall = program, cpu_seconds, wall_seconds
+    def __init__(self, words, wall_seconds):
+        self.words, self.wall = words, wall_seconds
         self.process, self.errors = None, None
 
     def open(self, path):
@@ -61,10 +66,12 @@ class Opener:
     def _start(self):
         self.errors = tempfile.TemporaryFile()
         # A finding of a sanitizer ends a reader of foreign formats with a status of its own: its stderr is not kept, and
-        # it may not start what searches for leaks. Allocations that fail are for the program to tell of.
+        # it may not start what searches for leaks. Allocations that fail are for the program to tell of; those that the
+        # limit on memory would refuse to a reader of small files fail here, too.
         environment = dict(os.environ, UBSAN_OPTIONS="print_stacktrace=1",
-                           ASAN_OPTIONS="detect_leaks=0:exitcode=99:allocator_may_return_null=1:quarantine_size_mb=32")
-        self.process = subprocess.Popen([self.program, "--memory", "1"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                           ASAN_OPTIONS="detect_leaks=0:exitcode=99:allocator_may_return_null=1:quarantine_size_mb=32:"
+                                        "max_allocation_size_mb=257")
+        self.process = subprocess.Popen(self.words, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=self.errors, env=environment)
 
     def _ended(self):
@@ -72,9 +79,11 @@ class Opener:
         self.process = None
         self.errors.seek(0)
         said = self.errors.read().decode("utf-8", "replace")
-        return Answer(status if status < 0 else -1000 - status, said=said[:3000])
+        return Answer(status if status < 0 else -1000 - status, said=said[-3000:])
 
 
 def line_fault(said):
-    """What is wrong with the words of an error, which stand on one line; empty where nothing is."""
-    return "" if len(said) >= 10 and said.isprintable() else "not one printable line: " + repr(said[:300])
+    """What is wrong with the words of an error, which stand on one line, with nothing that steers a terminal or turns the
+    direction of writing; empty where nothing is."""
+    steers = any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") or c in TURNS for c in said)
+    return "not one printable line: " + repr(said[:300]) if steers or len(said) < 10 else ""
