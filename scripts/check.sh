@@ -9,6 +9,7 @@
 #   asan      no fault of addresses or undefined behaviour in the tests of files, fields, sessions and commands, nor in what
 #             damaged headers make of the readers
 #   asan-mpi  nor in blocks on ranks, nor in pellucid-mpi, its ranks killed and its files broken
+#   mutants   nor in what damaged files of all formats make of the readers: 2 000 of each, many in one process
 #   tsan      no race in the tests that use threads
 #   fuzz      no input that clang's libFuzzer makes up in 60 s for each of our parsers is more to them than an error
 #   zink      the tests of OpenGL with another driver: Mesa's zink over its software Vulkan
@@ -17,7 +18,7 @@
 # failure, and both are named. Exit status 1 where a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all=(format mpi headless headers foreign dev asan asan-mpi tsan fuzz zink tidy)
+all=(format mpi headless headers foreign dev asan asan-mpi mutants tsan fuzz zink tidy)
 
 # Installs the packages of the commands that are missing: need COMMAND PACKAGE …
 need() {
@@ -91,6 +92,17 @@ check_asan-mpi() {
     cmake --build --preset dev-asan --target pellucid-cli pellucid-mpi test_ranks test_mpi
     export UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS="suppressions=$PWD/scripts/lsan-mpi.supp:print_suppressions=0"
     ctest --preset dev-asan -L '^(ranks|mpi)$'
+}
+
+check_mutants() {
+    scripts/setup.sh python3-pydicom python3-tifffile python3-h5py python3-netcdf4 python3-zarr
+    cmake --preset dev-asan >/dev/null
+    cmake --build --preset dev-asan --target open_files open_foreign_{dicom,tiff,images,arrays}
+    local status=0
+    python3 tests/tools/mutate_headers.py build/dev-asan/bin/open_files --count 2000 --jobs "$(nproc)" || status=1
+    /usr/bin/python3 tests/tools/mutate_foreign.py build/dev-asan/bin/open_foreign --count 2000 --jobs "$(nproc)" ||
+        status=1
+    return $status
 }
 
 check_tsan() {

@@ -14,7 +14,7 @@ namespace pellucid::test {
 
 /// A type of numbers, as each format calls it.
 struct MatrixType {
-    const char *nrrd, *meta;
+    const char *nrrd, *meta, *vtk;
     int nifti;
     int components = 1;                               ///< of a voxel in NIfTI
     bool isColour = false;                            ///< which NIfTI does not scale
@@ -57,26 +57,28 @@ std::string storedAs(const std::vector<double>& values) {
 }
 
 template <class T>
-MatrixType matrixType(const char* nrrd, const char* meta, int nifti, int components = 1, bool isColour = false) {
-    return {nrrd, meta, nifti, components, isColour, sizeof(T), valuesFor<T>, storedAs<T>, std::is_floating_point_v<T>};
+MatrixType matrixType(const char* nrrd, const char* meta, const char* vtk, int nifti, int components = 1,
+                      bool isColour = false) {
+    return {nrrd,     meta,      vtk,          nifti,       components,
+            isColour, sizeof(T), valuesFor<T>, storedAs<T>, std::is_floating_point_v<T>};
 }
 
 /// All fourteen of NIfTI that are read; the first ten are those of the other formats.
 inline std::vector<MatrixType> matrixTypes() {
-    return {matrixType<std::uint8_t>("uchar", "MET_UCHAR", 2),
-            matrixType<std::int8_t>("signed char", "MET_CHAR", 256),
-            matrixType<std::uint16_t>("ushort", "MET_USHORT", 512),
-            matrixType<std::int16_t>("short", "MET_SHORT", 4),
-            matrixType<std::uint32_t>("uint", "MET_UINT", 768),
-            matrixType<std::int32_t>("int", "MET_INT", 8),
-            matrixType<std::uint64_t>("ulonglong", "MET_ULONG_LONG", 1280),
-            matrixType<std::int64_t>("longlong", "MET_LONG_LONG", 1024),
-            matrixType<float>("float", "MET_FLOAT", 16),
-            matrixType<double>("double", "MET_DOUBLE", 64),
-            matrixType<float>("", "", 32, 2),
-            matrixType<double>("", "", 1792, 2),
-            matrixType<std::uint8_t>("", "", 128, 3, true),
-            matrixType<std::uint8_t>("", "", 2304, 4, true)};
+    return {matrixType<std::uint8_t>("uchar", "MET_UCHAR", "UInt8", 2),
+            matrixType<std::int8_t>("signed char", "MET_CHAR", "Int8", 256),
+            matrixType<std::uint16_t>("ushort", "MET_USHORT", "UInt16", 512),
+            matrixType<std::int16_t>("short", "MET_SHORT", "Int16", 4),
+            matrixType<std::uint32_t>("uint", "MET_UINT", "UInt32", 768),
+            matrixType<std::int32_t>("int", "MET_INT", "Int32", 8),
+            matrixType<std::uint64_t>("ulonglong", "MET_ULONG_LONG", "UInt64", 1280),
+            matrixType<std::int64_t>("longlong", "MET_LONG_LONG", "Int64", 1024),
+            matrixType<float>("float", "MET_FLOAT", "Float32", 16),
+            matrixType<double>("double", "MET_DOUBLE", "Float64", 64),
+            matrixType<float>("", "", "", 32, 2),
+            matrixType<double>("", "", "", 1792, 2),
+            matrixType<std::uint8_t>("", "", "", 128, 3, true),
+            matrixType<std::uint8_t>("", "", "", 2304, 4, true)};
 }
 
 /// The bytes of numbers of `size` bytes in the other order.

@@ -9,6 +9,11 @@ themselves, and --keep keeps them. The same --seed makes the same files. Exit st
 
     mutate_foreign.py build/release/bin/pellucid-cli --count 2000 --jobs 4 --keep found
 
+Instead of pellucid-cli, which is started for each file, it takes open_files, which opens them all in one process and
+starts a reader of foreign formats for each, and open_foreign (open_foreign_dicom and so on have to be there), which
+does what a reader does, for all files in one process: for builds with sanitizers. A finding of these is something found,
+in a reader, too.
+
 Needs Debian's python3-pydicom, python3-tifffile, python3-h5py, python3-netcdf4 and python3-zarr.
 """
 
@@ -25,6 +30,8 @@ import subprocess
 import sys
 import tempfile
 import zlib
+
+from opener import Opener, is_opener, line_fault
 
 SHAPE = (4, 6, 8)  # z, y, x
 
@@ -365,10 +372,52 @@ def prepare(options):
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def run_on(seed, number):
+READERS = {"dicom": "dicom", "tiff": "tiff", "png": "images", "hdf5": "arrays", "netcdf": "arrays", "zarr": "arrays"}
+g_openers = {}
+
+
+def is_alone():
+    """Without the limit on memory that a reader has: what a library takes in all is not looked at."""
+    return os.path.basename(g_options.program) == "open_foreign"
+
+
+def opener_for(name):
+    """open_files, or the open_foreign of this format; begun once."""
+    key = READERS[name] if is_alone() else ""
+    if key not in g_openers:
+        words = [g_options.program + "_" + key] if is_alone() else [g_options.program, "--memory", "1"]
+        g_openers[key] = Opener(words, g_options.timeout)
+    return g_openers[key]
+
+
+def is_from_sanitizer(said):
+    return any(mark in said for mark in ("ERROR: AddressSanitizer", "runtime error:", "(status 99)"))
+
+
+def opened(name, path):
+    """run_on() by these. A library may end open_foreign as it may end a reader."""
+    answer = opener_for(name).open(path)
+    has_ended = "crashed on it" in answer.said or (answer.status < 0 and not is_from_sanitizer(answer.said) and is_alone())
+    ended = "crashed" if has_ended else "read" if answer.status == 0 else "refused"
+    if is_from_sanitizer(answer.said):
+        wrong = "a sanitizer: " + answer.said
+    elif answer.status < 0 and (not has_ended or "still runs" in answer.said):
+        wrong = "the program ended (%d): %s" % (answer.status, answer.said)
+    elif answer.cpu > g_options.cpu:
+        wrong = "%.1f s of computing" % answer.cpu
+    elif answer.mib > g_options.memory and not is_alone():
+        wrong = "%.0f MiB of the heap" % answer.mib
+    else:
+        wrong = line_fault(answer.said) if answer.status == 1 else ""
+    return ended, wrong, answer.said[-400:].replace("\n", " ")
+
+
+def run_on(name, seed, number):
     """(how it ended, what is wrong): "read", "refused" or "crashed"."""
     with tempfile.TemporaryDirectory(dir=g_options.folder) as folder:
         path = write_files(os.path.join(folder, "in"), seed)
+        if is_opener(g_options.program):
+            return opened(name, path)
         result = os.path.join(folder, "out.nrrd") if number % 4 == 3 else None
         command = ["convert", path, "--out", result] if result else ["info", "--json", path]
         run = Run([g_options.program] + command + ["--memory", "1"], folder, g_options.timeout)
@@ -381,7 +430,7 @@ def try_one(case):
     name, number = case
     rng = random.Random("%s/%s/%d" % (g_options.seed, name, number))
     seed = mutated(rng, g_seeds[name])
-    ended, wrong, said = run_on(seed, number)
+    ended, wrong, said = run_on(name, seed, number)
     if (wrong or ended == "crashed") and g_options.keep:
         write_files(os.path.join(g_options.keep, "%s-%d" % (name, number)), seed)
     return name, number, ended, wrong, said
@@ -389,7 +438,7 @@ def try_one(case):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", help="pellucid-cli")
+    parser.add_argument("program", help="pellucid-cli, open_files or open_foreign")
     parser.add_argument("--count", type=int, default=2000, help="damaged files per format (default 2000)")
     parser.add_argument("--first", type=int, default=0, help="number of the first one, to go on later (default 0)")
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (default 1)")
@@ -402,7 +451,8 @@ def main():
     parser.add_argument("--keep", help="a folder for the files that were found to go wrong, or that crash a library")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
-    if not os.access(options.program, os.X_OK):
+    alone = os.path.basename(options.program) == "open_foreign"
+    if not os.access(options.program + ("_dicom" if alone else ""), os.X_OK):
         parser.error("no program: " + options.program)
     names = options.formats.split(",")
     if options.count < 1 or options.jobs < 1 or any(name not in FORMATS for name in names):
@@ -421,7 +471,7 @@ def main():
         prepare(options)
         for name in names:
             for number, seed in enumerate(g_seeds[name]):
-                ended, wrong, said = run_on(seed, 0)
+                ended, wrong, said = run_on(name, seed, 0)
                 if wrong or ended != "read":
                     failed.append("%s, seed %d: %s" % (name, number, wrong or said))
         cases = [(name, options.first + number) for number in range(options.count) for name in names]

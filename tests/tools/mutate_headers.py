@@ -6,6 +6,9 @@ without sense. The same --seed makes the same files. Exit status: 0 all well, 1 
 
     mutate_headers.py build/headless/bin/pellucid-cli --count 2000 --jobs 4 --keep found
 
+Instead of pellucid-cli, which is started for each file, it takes open_files, which opens them all in one process, for
+builds with sanitizers: it then also has to keep to --cpu seconds and --memory MiB of the heap.
+
 Needs Python 3.8 and nothing beside it.
 """
 
@@ -26,6 +29,8 @@ import subprocess
 import sys
 import tempfile
 import zlib
+
+from opener import Opener, is_opener, line_fault
 
 VALUES = bytes(range(24))  # 2 x 3 x 4 voxels of one byte
 
@@ -420,12 +425,8 @@ def mutated(rng, format_name):
     return whole
 
 
-def fault_of_answer(out):
+def fault_of_answer(answer):
     """Why the answer of a successful `info --json` makes no sense; empty where it does."""
-    try:
-        answer = json.loads(out)
-    except ValueError:
-        return "no JSON"
     dims = answer.get("dims")
     if not isinstance(dims, list) or len(dims) != 3 or any(d < 1 for d in dims):
         return "dims %s" % dims
@@ -440,8 +441,30 @@ def fault_of_answer(out):
     return ""
 
 
+g_opener = None
+
+
+def fault_of_opening(options, path):
+    """The same of open_files."""
+    global g_opener
+    if g_opener is None:
+        g_opener = Opener([options.program, "--memory", "1"], options.timeout)
+    answer = g_opener.open(path)
+    if answer.status < 0:
+        return False, "the program ended (%d): %s" % (answer.status, answer.said)
+    if answer.cpu > options.cpu:
+        return False, "%.1f s of computing" % answer.cpu
+    if answer.mib > options.memory + 2 * os.path.getsize(path) / 2**20:
+        return False, "%.0f MiB of the heap" % answer.mib
+    if answer.status == 0:
+        return True, fault_of_answer(answer.read)
+    return False, line_fault(answer.said)
+
+
 def fault_of_run(options, path):
     """(was read, what is wrong with the run)."""
+    if is_opener(options.program):
+        return fault_of_opening(options, path)
     try:
         run = subprocess.run([options.program, "info", "--json", "--memory", "1", path], stdin=subprocess.DEVNULL,
                              capture_output=True, timeout=options.timeout)
@@ -451,7 +474,10 @@ def fault_of_run(options, path):
     if run.returncode < 0:
         return False, "signal %d" % -run.returncode
     if run.returncode == 0:
-        wrong = fault_of_answer(run.stdout)
+        try:
+            wrong = fault_of_answer(json.loads(run.stdout))
+        except ValueError:
+            wrong = "no JSON"
         if not wrong and said:
             wrong = "words on stderr: " + said[:200]
         return True, wrong
@@ -518,12 +544,16 @@ def check_seeds(options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", help="pellucid-cli")
+    parser.add_argument("program", help="pellucid-cli, or open_files")
     parser.add_argument("--count", type=int, default=2000, help="damaged files per format (default 2000)")
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (default 1)")
     parser.add_argument("--seed", default="1", help="another one makes other files (default 1)")
     parser.add_argument("--formats", default=",".join(FORMATS), help="some of " + ",".join(FORMATS))
     parser.add_argument("--timeout", type=int, default=5, help="seconds after which a run hangs (default 5)")
+    parser.add_argument("--cpu", type=float, default=5, help="seconds of computing for open_files (default 5)")
+    parser.add_argument("--memory", type=float, default=256,
+                        help="MiB for open_files, besides twice the file (default 256)")
+    parser.add_argument("--first", type=int, default=0, help="number of the first one, to go on later (default 0)")
     parser.add_argument("--keep", help="an existing folder for the files that were found to go wrong")
     parser.add_argument("--address-space", type=float, default=4,
                         help="limit of the program's address space in GiB; 0: none, as sanitizers need (default 4)")
@@ -535,12 +565,12 @@ def main():
     if options.count < 1 or options.jobs < 1 or any(name not in FORMATS for name in names):
         parser.error("wrong --count, --jobs or --formats")
 
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as folder:
         options.folder = folder
         write_companions(folder)
         failed = check_seeds(options)
         counts = {name: [0, 0, 0] for name in names}  # read, refused, wrong
-        cases = [(name, number) for name in names for number in range(options.count)]
+        cases = [(name, number) for name in names for number in range(options.first, options.first + options.count)]
         with multiprocessing.Pool(options.jobs, prepare, (options,)) as pool:
             for name, number, was_read, wrong in pool.imap_unordered(try_one, cases, chunksize=8):
                 counts[name][2 if wrong else 0 if was_read else 1] += 1

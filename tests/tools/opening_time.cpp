@@ -1,6 +1,7 @@
 // How long loadVolume() takes of files that the system's cache holds, against what has to be done at least: of raw data
 // a copy in memory, of gzip what libdeflate takes, of formats that libraries read the same in this process. Told as
-// ratios of medians, both measured in turn.
+// ratios of medians, both measured in turn: of time, and of computing, the reader's included, which a busy machine
+// changes less.
 //
 //     opening_time_tiff [--raw LAYOUT] [--rounds N] FILE...
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include <libdeflate.h>
+#include <sys/resource.h>
 
 #include "base/mapped_file.h"
 #include "base/stopwatch.h"
@@ -87,6 +89,31 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+/// Of this process, and of those that it has waited for.
+double secondsOfComputing() {
+    double seconds = 0;
+    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage used{};
+        getrusage(who, &used);
+        for (const timeval& time : {used.ru_utime, used.ru_stime})
+            seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
+    return seconds;
+}
+
+/// Of each round.
+struct Times {
+    std::vector<double> clock, computing;
+    template <class Work>
+    void measure(const Work& work) {
+        const double before = secondsOfComputing();
+        const Stopwatch watch;
+        work();
+        clock.push_back(watch.seconds());
+        computing.push_back(secondsOfComputing() - before);
+    }
+};
+
 void compare(const VolumeSource& source, int rounds) {
     const Volume first = loadVolume(source);
     const std::string& path = source.path;
@@ -95,17 +122,15 @@ void compare(const VolumeSource& source, int rounds) {
     const Least least = first.format == "raw" && !isGzip ? copyOf(path)
                         : isGzip                         ? inflated(path, bytes + (path.ends_with(".nii.gz") ? 352 : 0))
                                                          : inProcess(path);
-    std::vector<double> whole, part;
+    Times whole, part;
     for (int n = 0; n < rounds; ++n) {
-        const Stopwatch one;
-        static_cast<void>(loadVolume(source));
-        whole.push_back(one.seconds());
-        const Stopwatch other;
-        least.run();
-        part.push_back(other.seconds());
+        whole.measure([&] { static_cast<void>(loadVolume(source)); });
+        part.measure(least.run);
     }
-    std::printf("%s: %.1f MB in %.3f s, %s %.3f s, ratio %.2f\n", path.c_str(), 1e-6 * static_cast<double>(bytes),
-                median(whole), least.what.c_str(), median(part), median(whole) / median(part));
+    std::printf("%s: %.1f MB in %.3f s, %s %.3f s, ratio %.2f; of computing %.3f s and %.3f s, ratio %.2f\n",
+                path.c_str(), 1e-6 * static_cast<double>(bytes), median(whole.clock), least.what.c_str(),
+                median(part.clock), median(whole.clock) / median(part.clock), median(whole.computing),
+                median(part.computing), median(whole.computing) / median(part.computing));
 }
 
 } // namespace

@@ -2,8 +2,9 @@
 """Runs every command of pellucid-cli that writes files where these cannot be written, and looks at what is left.
 
 A disk that is full, at once or half way; a folder that is read-only, belongs to somebody else, or goes away meanwhile; a
-limit on the size of files; names as long as they may be, and longer. Each time there has to be exit status 1, one line
-on stderr, no unfinished file, and what was there before as it was. Exit status: 0 all well, 1 something was found, 2
+limit on the size of files, on address space and on processes; names as long as they may be, and longer. Each time there
+has to be exit status 1, one line on stderr, no unfinished file, and what was there before as it was; where a limit leaves
+enough, the file. Exit status: 0 all well, 1 something was found, 2
 wrong usage.
 
     writing_faults.py build/release/bin/pellucid-cli
@@ -26,6 +27,7 @@ TOLD = ["sample:shells", "--sample-size", "16", "--tf", "tents:3"]
 VIEWED = TOLD + ["--engine", "cpu"]
 AIMED = VIEWED + ["--target", "1,1,1", "--max-iterations", "1"]
 PICTURE = ["--size", "64x64"]
+FILM = ["film", *TOLD, "--size", "192x160", "--seconds", "0.4", "--out", "{}"]  # more than a page for each picture
 
 # What is run, with {} for the output; a name without a suffix is a folder.
 COMMANDS = [
@@ -37,7 +39,7 @@ COMMANDS = [
     *((["render", *VIEWED, *PICTURE, "--out", "{}"], "a" + suffix) for suffix in (".png", ".jpg", ".tif", ".exr")),
     (["plot", *TOLD, "--out", "{}"], "a.svg"),
     (["fields", *VIEWED, "--out", "{}"], "fields"),
-    (["film", *TOLD, *PICTURE, "--seconds", "0.2", "--out", "{}"], "film"),
+    (FILM, "film"),
     (["optimize", *AIMED, "--out-tf", "{}"], "a.tf.json"),
     (["optimize", *AIMED, "--out-camera", "{}"], "a.camera.json"),
     (["optimize", *AIMED, "--curves", "{}"], "a.csv"),
@@ -47,7 +49,7 @@ COMMANDS = [
     (["space", *VIEWED, "--target", "1,1,1", "--samples", "3", "--save", "{}"], "a.nrrd"),
 ]
 if shutil.which("ffmpeg"):
-    COMMANDS.append((["film", *TOLD, *PICTURE, "--seconds", "0.2", "--out", "{}"], "a.mp4"))
+    COMMANDS.append((FILM, "a.mp4"))
 
 OLD = b"what was there before\n"
 
@@ -87,6 +89,9 @@ class Case:
     def bytes(self):
         """Of the largest file."""
         return max(len(data) for data in self.good.values() if data is not None)
+
+    def all_bytes(self):
+        return sum(len(data) for data in self.good.values() if data is not None)
 
     def put_old(self, folder):
         """Files of these names that are there already; none for a folder that has to be new."""
@@ -152,7 +157,7 @@ class Disk:
 
 def on_full_disk(case, report, folder):
     for fault, part in (("full disk", 0), ("disk that fills up", 0.5)):
-        left = int(case.bytes() * part)
+        left = int(case.all_bytes() * part)
         if part > 0 and left < 8192:
             continue  # it fits into a page
         disk = Disk(folder)
@@ -178,7 +183,7 @@ def in_foreign_folder(case, report, folder):
     os.chmod(folder, 0o555)
     for where, _, _ in os.walk(folder):
         os.chmod(where, 0o555)
-    nobody = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"] if os.geteuid() == 0 else []
+    nobody = AS_NOBODY if os.geteuid() == 0 else []
     report.add("folder of others", case, case.fault_of(case.run(folder, before=nobody), folder))
     for where, _, _ in os.walk(folder):
         os.chmod(where, 0o755)
@@ -191,6 +196,53 @@ def with_limit(case, report, folder):
         run = case.run(folder, prepare=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
         # The message goes through a pipe, which the limit does not hold for.
         report.add("limit on file sizes", case, case.fault_of(run, folder))
+        shutil.rmtree(folder)
+        os.mkdir(folder)
+
+
+AS_NOBODY = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"]
+
+
+def least_memory(program):
+    """MiB of address space that the program needs to begin at all."""
+    for mib in range(20, 4000, 10):
+        if subprocess.run([program, "samples"], capture_output=True,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (mib << 20, mib << 20))).returncode == 0:
+            return mib
+    return 4000
+
+
+def without_warnings(stderr):
+    """What Mesa says of drivers that it cannot load is not ours."""
+    lines = stderr.split(b"\n")
+    return b"\n".join(line for n, line in enumerate(lines)
+                      if not line.startswith(b"libEGL warning") and (line or n + 1 == len(lines)))
+
+
+def written_or_told(case, run, folder):
+    """What is wrong with a run that a limit may have stopped."""
+    if run.returncode != 0:
+        run.stderr = without_warnings(run.stderr)
+        return case.fault_of(run, folder)
+    return "" if sorted(tree(folder)) == sorted(case.good) else "no error, and not all that should be there"
+
+
+def with_little_memory(case, report, folder):
+    least = least_memory(case.program)
+    for factor in (1, 1.2, 1.5, 2, 4):
+        most = int(least * factor) << 20
+        run = case.run(folder, prepare=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
+        report.add("limit on memory", case, written_or_told(case, run, folder))
+        shutil.rmtree(folder)
+        os.mkdir(folder)
+
+
+def with_few_processes(case, report, folder):
+    """For somebody who has none yet; nothing limits those of root."""
+    for most in (1, 2):
+        os.chmod(folder, 0o777)
+        run = case.run(folder, before=["prlimit", "--nproc=%d" % most, *AS_NOBODY])
+        report.add("limit on processes", case, written_or_told(case, run, folder))
         shutil.rmtree(folder)
         os.mkdir(folder)
 
@@ -248,7 +300,7 @@ def main():
         if subprocess.run([*alone, "true"], stderr=subprocess.DEVNULL).returncode == 0:
             os.execvp("unshare", [*alone, sys.executable, *sys.argv, "--in-namespace"])
 
-    faults = [with_limit, while_it_goes_away, with_long_names]
+    faults = [with_limit, with_little_memory, while_it_goes_away, with_long_names]
     report = Report()
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o755)
@@ -258,12 +310,15 @@ def main():
             faults += [on_full_disk, on_read_only_disk]
         else:
             report.left_out.append("disks: mounting is not allowed")
-        if os.geteuid() != 0 or subprocess.run(
-                ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups", options.program, "samples"],
-                capture_output=True).returncode == 0:
+        starts_for_nobody = subprocess.run([*AS_NOBODY, options.program, "samples"], capture_output=True).returncode == 0
+        if os.geteuid() != 0 or starts_for_nobody:
             faults.append(in_foreign_folder)
         else:
             report.left_out.append("folders of others: nobody else can start the program")
+        if os.geteuid() == 0 and starts_for_nobody:
+            faults.append(with_few_processes)
+        else:
+            report.left_out.append("limits on processes: root has to begin this, and somebody else start the program")
         for words, name in COMMANDS:
             if options.only not in " ".join(words):
                 continue

@@ -1,14 +1,16 @@
-// Every combination of what headers of NIfTI, NRRD and MetaImage can say of their values: each is read right.
+// Every combination of what headers of NIfTI, NRRD, MetaImage and VTK can say of their values: each is read right.
 #include <catch2/catch.hpp>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "packers.h"
 #include "support/format_matrix.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
 #include "volume_files.h"
+#include "vtk_files.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -210,4 +212,109 @@ TEST_CASE("MetaImage of any type, packing, byte order, layout and header size", 
                         }
         }
     CHECK(files == 10 * 2 * 2 * (3 + 1 + 2)); // raw beside the header with three sizes, and within; packed both ways
+}
+
+namespace {
+
+/// Numbers as VTK writes them as text.
+std::string numbersText(const MatrixType& type, const std::vector<double>& values) {
+    std::string all;
+    for (const double value : values) {
+        char text[40];
+        std::snprintf(text, sizeof text, type.isFloat ? "%.17g " : "%.0f ", value);
+        all += text;
+    }
+    return all;
+}
+
+/// Each way in which a file of VTK has its arrays.
+std::vector<Style> vtkStyles() {
+    using Place = Style::Place;
+    using Packer = Style::Packer;
+    std::vector<Style> styles;
+    for (const Place place : {Place::Ascii, Place::Inline, Place::Raw, Place::Base64})
+        for (const std::optional<Packer> packer : {std::optional<Packer>(), std::optional(Packer::ZLib),
+                                                   std::optional(Packer::Lz4), std::optional(Packer::Lzma)})
+            for (const bool wide : {false, true})
+                for (const bool bigEndian : {false, true})
+                    // 48 divides the bytes of some arrays, and no array is longer than 1 << 15, which is VTK's own.
+                    for (const std::size_t block : {std::size_t{48}, std::size_t{1} << 15})
+                        styles.push_back(
+                            {place, packer.has_value(), bigEndian, wide, block, packer.value_or(Packer::ZLib)});
+    return styles;
+}
+
+} // namespace
+
+TEST_CASE("VTK image data of any type, encoding, compressor, header type and byte order", "[matrix]") {
+    const TempFolder folder;
+    std::size_t files = 0;
+    auto types = matrixTypes();
+    types.resize(10);
+    for (const MatrixType& type : types)
+        for (const int components : {1, 3}) {
+            // Another array before the one that is read, so that its offset matters.
+            const std::vector<double> before = type.values(7 * 60),
+                                      values = type.values(static_cast<std::size_t>(5 * 3 * 4 * components));
+            for (const Style& style : vtkStyles())
+                for (const bool ofCells : {false, true}) {
+                    const auto arrayOf = [&](const std::string& name, const std::vector<double>& numbers, int count) {
+                        return Array{"type=\"" + std::string(type.vtk) + "\" Name=\"" + name +
+                                         "\" NumberOfComponents=\"" + std::to_string(count) + "\"",
+                                     numbersText(type, numbers),
+                                     inOrder(type.stored(numbers), type.bytes, style.bigEndian)};
+                    };
+                    const std::vector<Array> arrays{arrayOf("before", before, 7), arrayOf("a", values, components)};
+                    // 5 x 3 x 4 points, or as many cells between 6 x 4 x 5 points.
+                    const std::string extent = ofCells ? "2 7 0 3 -1 3" : "2 6 0 2 -1 2";
+                    Piece piece{extent, ofCells ? std::vector<Array>{} : arrays,
+                                ofCells ? arrays : std::vector<Array>{}};
+                    const std::string path = folder.write(
+                        "a.vti", vtiOfPieces(style, {piece}, "", "WholeExtent=\"" + extent + "\" Spacing=\"1 2 3\""));
+                    CAPTURE(type.vtk, components, static_cast<int>(style.place), style.compressed,
+                            static_cast<int>(style.packer), style.bigEndian, style.wide, style.block, ofCells);
+                    VolumeSource source = at(path);
+                    source.array = "a";
+                    source.component = components - 1;
+                    const Volume volume = loadVolume(source);
+                    REQUIRE(volume.dims() == Int3(5, 3, 4));
+                    REQUIRE(volume.geometry().spacing == Vec3(1, 2, 3));
+                    REQUIRE(wrongOnes(volume, values, static_cast<std::size_t>(components - 1),
+                                      static_cast<std::size_t>(components), 1, 0) == 0);
+                    ++files;
+                }
+        }
+    CHECK(files == 10 * 2 * (4 * 4 * 2 * 2 * 2) * 2); // types, components, styles, points and cells
+}
+
+TEST_CASE("VTK image data that says how its arrays are stored in words nobody knows is refused by them", "[matrix]") {
+    const TempFolder folder;
+    const std::vector<double> values(6, 7.0);
+    const auto refusalOf = [&](const std::string& from, const std::string& to, const Style& style) {
+        std::string text = vti(
+            style, {{"type=\"UInt8\" Name=\"a\"", numbersText(matrixTypes().front(), values), std::string(6, '\7')}});
+        text.replace(text.find(from), from.size(), to);
+        try {
+            loadVolume(at(folder.write("a.vti", text)));
+            return std::string("nothing");
+        } catch (const FileError& e) {
+            return e.problem();
+        }
+    };
+    for (const Style& style : vtkStyles()) {
+        CAPTURE(static_cast<int>(style.place), style.compressed, static_cast<int>(style.packer), style.bigEndian,
+                style.wide);
+        const auto contains = [](const std::string& words) { return Catch::Matchers::Contains(words); };
+        CHECK_THAT(refusalOf("type=\"UInt8\"", "type=\"Bit\"", style), contains("'Bit'"));
+        CHECK_THAT(refusalOf("type=\"UInt8\"", "type=\"String\"", style), contains("'String'"));
+        CHECK_THAT(refusalOf(style.bigEndian ? "BigEndian" : "LittleEndian", "MiddleEndian", style),
+                   contains("'MiddleEndian'"));
+        if (style.wide) CHECK_THAT(refusalOf("UInt64", "UInt128", style), contains("'UInt128'"));
+        if (style.compressed) CHECK_THAT(refusalOf("DataCompressor", "Brotli", style), contains("Brotli"));
+        // An array of another size than the extent asks for, in each encoding.
+        CHECK(refusalOf("WholeExtent=\"0 1", "WholeExtent=\"0 2", style) != "nothing");
+        CHECK(refusalOf("type=\"UInt8\"", "type=\"UInt16\"", style) ==
+              (style.place == Style::Place::Ascii ? "nothing"
+                                                  : "the array has 6 bytes, but its extent and type need 12"));
+    }
 }

@@ -330,11 +330,77 @@ TEST_CASE("a folder of Zarr is replaced by another one, and nothing else is", "[
     CHECK(std::filesystem::exists(folder.path("own.zarr/letter.txt")));
 }
 
-TEST_CASE("NIfTI refuses what its header cannot count", "[writer]") {
+TEST_CASE("a unit of time with quotes stays in its place in NRRD, and one that cannot is said", "[writer]") {
+    const TempFolder folder;
+    const Geometry g = oblique(WorldAxes::Patient);
+    const std::string path = folder.path("a.nrrd");
+    for (const char* unit : {"\"", "5\" disk", "a \"b\" c", "s\" encoding: \"raw"}) {
+        CAPTURE(unit);
+        CHECK(writeSeries(*threeFrames(g, unit), path).empty());
+        const auto read = TimeSeries::open(sourceOf(path));
+        REQUIRE(read->size() == 3);
+        CHECK(read->listing().timeUnit == unit);
+        CHECK(read->listing().frames[2].time == 3.5);
+        CHECK(read->load(2)->samples() == threeFrames(g)->load(2)->samples());
+    }
+    // A line end would begin another field, and a backslash take the quote that ends the unit.
+    for (const char* unit :
+         {"s\nencoding: raw", "s\n\n", "s\\", "\r", "a unit of more than forty bytes is no unit any more"}) {
+        CAPTURE(unit);
+        const auto lost = writeSeries(*threeFrames(g, unit), path);
+        REQUIRE(lost.size() == 1);
+        CHECK_THAT(lost.front(), Contains("NRRD cannot write the unit of time"));
+        const auto read = TimeSeries::open(sourceOf(path));
+        REQUIRE(read->size() == 3);
+        CHECK(read->listing().timeUnit.empty());
+        CHECK(read->load(2)->samples() == threeFrames(g)->load(2)->samples());
+    }
+}
+
+TEST_CASE("what NIfTI-1 cannot count is written as NIfTI-2", "[writer]") {
     const TempFolder folder;
     Geometry g;
-    g.dims = {40'000, 1, 1};
-    const Volume volume(g, SampleArray<std::uint8_t>(std::vector<std::uint8_t>(40'000)));
-    CHECK_THROWS_WITH(writeVolume(volume, folder.path("a.nii")), Contains("32767"));
-    CHECK(folder.fileCount() == 0);
+    g.dims = {40'000, 2, 2};
+    g.spacing = {0.1, 0.2, 3}; // which single precision does not have
+    g.origin = {1.1, -2.2, 3.3};
+    g.directions = Mat3(Vec3(0.6, 0.8, 0), Vec3(-0.8, 0.6, 0), Vec3(0, 0, 1));
+    g.worldAxes = WorldAxes::Patient;
+    const Volume volume = volumeOf<std::int16_t>(g);
+    for (const char* name : {"a.nii", "a.nii.gz"}) {
+        CAPTURE(name);
+        const auto said = writeVolume(volume, folder.path(name));
+        REQUIRE(said.size() == 1);
+        CHECK_THAT(said[0], Contains("the file is NIfTI-2"));
+        const Volume read = load(folder.path(name));
+        CHECK(read.samples() == volume.samples());
+        CHECK(read.dims() == g.dims);
+        CHECK(read.geometry().spacing == g.spacing);
+        CHECK(read.geometry().origin == g.origin);
+        for (int a = 0; a < 3; ++a) CHECK(glm::length(read.geometry().directions[a] - g.directions[a]) < 1e-15);
+        CHECK(read.geometry().worldAxes == WorldAxes::Patient);
+    }
+    // 540 bytes of header, 4 that say that no extensions follow, and two for each voxel.
+    CHECK(std::filesystem::file_size(folder.path("a.nii")) == 544 + 2 * voxelCount(g.dims));
+    // The longest axis that NIfTI-1 has.
+    g.dims = {32'767, 1, 1};
+    writeVolume(volumeOf<std::int16_t>(g), folder.path("b.nii"));
+    CHECK(std::filesystem::file_size(folder.path("b.nii")) == 352 + 2 * voxelCount(g.dims));
+}
+
+TEST_CASE("a great many frames are written as NIfTI-2, with their times", "[writer]") {
+    const TempFolder folder;
+    SeriesListing listing;
+    listing.hasTimes = true;
+    listing.timeUnit = "ms";
+    listing.frames.resize(32'768);
+    for (std::size_t n = 0; n < listing.frames.size(); ++n) listing.frames[n].time = 0.1 * static_cast<double>(n);
+    TimeSeries series(listing, [](int frame, const JobControl&) {
+        return Volume(Geometry{{1, 1, 1}}, SampleArray<std::int32_t>(std::vector<std::int32_t>{frame}));
+    });
+    CHECK(writeSeries(series, folder.path("a.nii")).size() == 1);
+    const auto read = TimeSeries::open(sourceOf(folder.path("a.nii")));
+    REQUIRE(read->size() == 32'768);
+    CHECK(read->load(32'767)->value(0) == 32'767);
+    CHECK(read->listing().timeUnit == "ms");
+    CHECK(read->listing().frames[32'767].time == Approx(3276.7));
 }

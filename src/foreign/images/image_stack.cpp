@@ -112,22 +112,29 @@ void ImageStack::read(int step, const ReaderBox& box, std::span<std::byte> voxel
                       const JobControl& job) const {
     std::unique_ptr<PictureFile> file;
     std::size_t opened = m_files.size(); // none
-    std::vector<std::byte> slice(static_cast<std::size_t>(bytesOf(m_shape)));
+    const auto sliceBytes = static_cast<std::size_t>(bytesOf(m_shape));
     const glm::ivec2 size(m_shape.width, m_shape.height);
     const std::size_t bytesPerVoxel =
-        slice.size() / (static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+        sliceBytes / (static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
     const VoxelRegion& region = box.region;
+    const bool isWhole = region.lo.x == 0 && region.lo.y == 0 && region.hi.x == size.x && region.hi.y == size.y;
+    std::vector<std::byte> slice(isWhole ? 0 : sliceBytes); // whole ones need no other place
     for (int z = region.lo.z; z < region.hi.z; ++z) {
         const Page& page = pageAt(z, box.component, step);
         if (opened != page.file) {
             file = m_open(m_files[page.file]);
             opened = page.file;
         }
-        before(slice.size());
+        before(sliceBytes);
         if (!file->goTo(page.page) || !(file->shape() == m_shape))
             throw failure(m_files[page.file], "the file has changed while it was read");
-        file->read(slice);
-        voxels = copyFromSlice(slice, size, bytesPerVoxel, region, voxels);
+        if (isWhole) {
+            file->read(voxels.first(sliceBytes));
+            voxels = voxels.subspan(sliceBytes);
+        } else {
+            file->read(slice);
+            voxels = copyFromSlice(slice, size, bytesPerVoxel, region, voxels);
+        }
         job.throwIfStopped();
         job.report(static_cast<double>(z + 1 - region.lo.z) / static_cast<double>(region.hi.z - region.lo.z));
     }

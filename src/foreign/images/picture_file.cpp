@@ -106,7 +106,8 @@ public:
         const auto tileBytes = static_cast<std::size_t>(isTiled ? TIFFTileSize64(m_file) : TIFFStripSize64(m_file));
         if (tileBytes < pixel * tileWidth * tileHeight)
             throw pictureFailure(m_path, "a page has tiles of a wrong size");
-        std::vector<char> tile(tileBytes);
+        const bool isInPlace = !isTiled && planes == 1; // strips are rows of whole pixels, as they are wanted
+        std::vector<char> tile(isInPlace ? 0 : tileBytes);
         std::uint32_t number = 0;
         for (int plane = 0; plane < planes; ++plane)
             for (std::uint32_t y = 0; y < height; y += tileHeight)
@@ -115,12 +116,13 @@ public:
                                         columns = std::min(tileWidth, width - x);
                     const auto wanted = static_cast<tmsize_t>(pixel * tileWidth * (isTiled ? tileHeight : rows));
                     if (isDeflated()) requireSound(number, isTiled);
-                    const tmsize_t got = isTiled ? TIFFReadEncodedTile(m_file, number, tile.data(), wanted)
-                                                 : TIFFReadEncodedStrip(m_file, number, tile.data(), wanted);
+                    void* const into = isInPlace ? static_cast<void*>(to.data() + pixel * width * y) : tile.data();
+                    const tmsize_t got = isTiled ? TIFFReadEncodedTile(m_file, number, into, wanted)
+                                                 : TIFFReadEncodedStrip(m_file, number, into, wanted);
                     if (got < wanted)
                         throw pictureFailure(m_path, "page " + std::to_string(m_page) + " cannot be read",
                                              tiffComplaint());
-                    for (std::uint32_t row = 0; row < rows; ++row)
+                    for (std::uint32_t row = 0; row < rows && !isInPlace; ++row)
                         put(to, {x, y + row}, columns, tile.data() + pixel * tileWidth * row, page, plane, pixel);
                 }
     }

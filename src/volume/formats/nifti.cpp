@@ -14,6 +14,7 @@
 #include <zlib.h>
 
 #include "base/round_numbers.h"
+#include "volume/formats/nifti_form.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
 
@@ -21,21 +22,9 @@ namespace pellucid {
 
 namespace {
 
-/// Where fields stand in a header, and in which type: 1 has 16-bit integers and single precision, 2 has wider ones.
-struct HeaderForm {
-    int version;
-    std::size_t bytes, magic;
-    std::size_t datatype, dim, pixdim, voxOffset, slope, intercept, timeOffset;
-    std::size_t qformCode, sformCode, qform, sform, units, intent;
-};
-constexpr HeaderForm kForms[]{
-    {1, 348, 344, 70, 40, 76, 108, 112, 116, 136, 252, 254, 256, 280, 123, 68},
-    {2, 540, 4, 12, 16, 104, 168, 176, 184, 216, 344, 348, 352, 400, 500, 504},
-};
-
 /// The bytes of the longest header, unpacked where the file is gzip; fewer where there are no more.
 std::vector<unsigned char> headerBytes(const std::string& path) {
-    std::vector<unsigned char> bytes(kForms[1].bytes);
+    std::vector<unsigned char> bytes(kNiftiForms[1].bytes);
     const gzFile file = gzopen(path.c_str(), "rb"); // reads plain files as they are
     if (file == nullptr) throw FileError("cannot read the file", path, "check its permissions");
     const int read = gzread(file, bytes.data(), static_cast<unsigned>(bytes.size()));
@@ -50,8 +39,8 @@ bool isGzip(const std::string& path) { return fileHead(path, 2) == "\x1f\x8b"; }
 class NiftiHeader {
 public:
     explicit NiftiHeader(const std::string& path) : m_path(path), m_bytes(headerBytes(path)) {
-        const HeaderForm* const form = m_bytes.size() < sizeof(std::int32_t) ? nullptr : formBySize();
-        if (m_bytes.size() < (form != nullptr ? form->bytes : kForms[0].bytes)) {
+        const NiftiForm* const form = m_bytes.size() < sizeof(std::int32_t) ? nullptr : formBySize();
+        if (m_bytes.size() < (form != nullptr ? form->bytes : kNiftiForms[0].bytes)) {
             const std::string head = fileHead(path, 1024);
             if (form != nullptr || head.starts_with("\x1f\x8b"))
                 fail("the file holds " + std::to_string(m_bytes.size()) + " readable bytes, fewer than a NIfTI header",
@@ -67,7 +56,7 @@ public:
         if (!m_isPair && mark != std::string("n+") + version + '\0')
             fail(std::string("the header lacks the mark of NIfTI-") + version,
                  "convert an Analyze file to NIfTI first");
-        if (m_form.version == 2 && std::memcmp(m_bytes.data() + m_form.magic + 4, "\r\n\032\n", 4) != 0)
+        if (m_form.version == 2 && std::memcmp(m_bytes.data() + m_form.magic + 4, kNifti2Mark, 4) != 0)
             fail("the mark of NIfTI-2 in the header is damaged, as by copying the file as text",
                  "copy it again, as binary data");
     }
@@ -103,11 +92,11 @@ public:
 
 private:
     /// By the size that the header gives of itself, in the byte order in which that is one; null: in neither.
-    const HeaderForm* formBySize() {
+    const NiftiForm* formBySize() {
         for (const bool swapped : {false, true}) {
             m_swapped = swapped;
             const auto size = at<std::int32_t>(0);
-            for (const HeaderForm& form : kForms)
+            for (const NiftiForm& form : kNiftiForms)
                 if (size == static_cast<std::int32_t>(form.bytes)) return &form;
         }
         return nullptr;
@@ -135,7 +124,7 @@ private:
     std::string m_path;
     std::vector<unsigned char> m_bytes;
     bool m_swapped = false, m_isPair = false;
-    HeaderForm m_form = kForms[0];
+    NiftiForm m_form = kNiftiForms[0];
 };
 
 /// The file that holds the data: `header` itself, or the *.img beside a *.hdr, packed or not. Throws FileError where

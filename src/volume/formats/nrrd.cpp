@@ -168,10 +168,23 @@ std::optional<Vec3> flipOfSpace(const TextHeader& header) {
     return {};
 }
 
-/// The n-th of the texts in quotes of a field.
+/// The n-th of the texts in quotes of a field; in them, \" is a quote.
 std::string quotedWord(const std::string& text, std::size_t n) {
-    const std::vector<std::string> parts = splitAt('"', text); // outside and inside quotes, in turn
-    return 2 * n + 2 < parts.size() ? trimmed(parts[2 * n + 1]).substr(0, 40) : std::string();
+    constexpr std::size_t kMostUnit = 40; // bytes
+    std::string word;
+    bool isInside = false;
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const bool isEscaped = isInside && text[at] == '\\' && at + 1 < text.size() && text[at + 1] == '"';
+        if (text[at] == '"') {
+            if (isInside && count++ == n) return trimmed(word).substr(0, kMostUnit);
+            isInside = !isInside;
+            word.clear();
+        } else if (isInside) {
+            word += text[isEscaped ? ++at : at];
+        }
+    }
+    return {};
 }
 
 /// Millimetres of the header's unit of length; 1 where it names none that is known. Throws FileError where axes have

@@ -25,6 +25,20 @@ const char* nrrdType(SampleType type) {
     return kTypes[static_cast<std::size_t>(type)];
 }
 
+/// Whether a unit can stand in quotes: short, on one line, and without what would end them.
+bool canBeQuoted(const std::string& unit) {
+    constexpr std::size_t kMostUnit = 40; // bytes, of which a reader keeps no more
+    return unit.size() <= kMostUnit && unit == trimmed(printable(unit)) && unit.find('\\') == std::string::npos;
+}
+
+/// A unit of time in quotes, in which \" is a quote; none where it cannot be said.
+std::string quoted(const std::string& unit) {
+    std::string text = "\"";
+    if (canBeQuoted(unit))
+        for (const char c : unit) text += c == '"' ? std::string("\\\"") : std::string(1, c);
+    return text + "\"";
+}
+
 std::string headerText(const Geometry& g, SampleType type, const std::string& encoding, int frames = 1,
                        const std::optional<StepTimes>& times = {}) {
     const auto vector = [](const Vec3& v) {
@@ -42,7 +56,7 @@ std::string headerText(const Geometry& g, SampleType type, const std::string& en
                        (several ? " none" : "") + "\nkinds: domain domain domain" + (several ? " time" : "");
     if (several && times) // what is said of axes in space is said by their directions
         text += "\nspacings: nan nan nan " + exactText(times->width) + "\naxis mins: nan nan nan " +
-                exactText(times->first) + "\nunits: \"\" \"\" \"\" \"" + times->unit + "\"";
+                exactText(times->first) + "\nunits: \"\" \"\" \"\" " + quoted(times->unit);
     return text + "\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +
            "\nencoding: " + encoding + "\nspace origin: " + vector(g.origin) + "\n\n";
 }
@@ -54,12 +68,14 @@ void write(const FramesToWrite& frames, const std::string& path, const JobContro
     });
 }
 
+std::vector<std::string> losses(const FramesToWrite& frames, const std::string&) {
+    if (!frames.times || canBeQuoted(frames.times->unit)) return {};
+    return {"NRRD cannot write the unit of time " + inQuotes(frames.times->unit)};
+}
+
 } // namespace
 
-VolumeWriter nrrdWriter() {
-    return {
-        "NRRD", {".nrrd"}, write, [](const FramesToWrite&, const std::string&) { return std::vector<std::string>{}; }};
-}
+VolumeWriter nrrdWriter() { return {"NRRD", {".nrrd"}, write, losses}; }
 
 struct GzipOutput::Stream {
     z_stream zlib{};
