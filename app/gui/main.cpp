@@ -57,7 +57,9 @@ void describe(QCommandLineParser& parser) {
          "tents:N[:PEAK], "
          "ramp:N or preset:NAME.",
          "SPEC"});
-    parser.addOption({"session", "Continue with a saved session, a *.pellucid.json file.", "FILE"});
+    parser.addOption({"session",
+                      "Continue with a saved session, a *.pellucid.json file or a PNG picture that carries one.",
+                      "FILE"});
     parser.addOption({"windows", "Each FILE in a window of its own, not as frames of one series."});
     parser.addOption({"study", "Show the study that was prepared into a folder, and nothing else.", "DIR"});
     parser.addOption(

@@ -13,6 +13,7 @@
 #include "volume/file_names.h"
 #include "volume/formats/reader.h"
 #include "volume/procedural.h"
+#include "volume/process/reader_process.h"
 
 namespace pellucid {
 
@@ -198,10 +199,14 @@ FileList listFiles(const VolumeSource& source) {
     return list;
 }
 
-/// What a file holds; nothing where it is missing or broken, which loading it will tell.
-std::optional<FileContents> knownContents(const VolumeSource& source, const JobControl& job) {
+/// What a file holds; nothing where it is missing or broken, which loading it will tell. One that is alone and takes
+/// its reader too long is not tried twice: that is thrown.
+std::optional<FileContents> knownContents(const VolumeSource& source, bool alone, const JobControl& job) {
     try {
         return contentsOf(source, job);
+    } catch (const TakesTooLong&) {
+        if (alone) throw;
+        return {};
     } catch (const FileError&) {
         return {};
     }
@@ -216,7 +221,7 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
     frame.source.more.clear();
     frame.source.step = 0;
     if (!alone) frame.source.frames.reset(); // they count files, not steps of a longer headerless one
-    const std::optional<FileContents> contents = knownContents(frame.source, job);
+    const std::optional<FileContents> contents = knownContents(frame.source, alone, job);
     const int steps = contents ? contents->steps : 1;
     frame.source.frames.reset();
     // Of one file with many steps, no more are listed than are asked for.

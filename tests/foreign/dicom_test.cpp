@@ -409,6 +409,10 @@ TEST_CASE("what happens to the process that reads is told in a sentence", "[dico
     };
     with("read line; kill -SEGV $$");
     CHECK_THROWS_WITH(loadVolume(at(path)), Contains("crashed on it (signal 11)") && Contains("a.dcm"));
+    // A file that takes too long is not tried twice.
+    with("echo once >> '" + folder.path("count") + "'; read line; kill -XCPU $$");
+    CHECK_THROWS_WITH(listSeries(at(path)), Contains("takes too long") && Contains("a.dcm"));
+    CHECK(fs::file_size(folder.path("count")) == 5); // "once" and a line end
     with("read line; echo nonsense");
     CHECK_THROWS_WITH(loadVolume(at(path)), Contains("can be understood"));
     with("read line; echo '{\"layout\":{\"axes\":[]}}'; sleep 100");

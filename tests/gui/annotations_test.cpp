@@ -120,7 +120,7 @@ TEST_CASE("a saved picture has the marks where it is asked for them", "[frame]")
 
 TEST_CASE("the dialog offers annotations where there are any", "[frame]") {
     for (const bool shown : {true, false}) {
-        SaveImageDialog dialog("a.png", {400, 300}, shown);
+        SaveImageDialog dialog("a.png", {400, 300}, shown, true);
         CHECK(dialog.options().annotated == shown);
         auto* box = dialog.findChild<QCheckBox*>("imageReference");
         REQUIRE(box != nullptr);

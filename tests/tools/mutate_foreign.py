@@ -369,6 +369,7 @@ g_seeds = {}
 def prepare(options):
     global g_options
     g_options = options
+    g_openers.clear()  # each process needs its own
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
@@ -391,7 +392,7 @@ def opener_for(name):
 
 
 def is_from_sanitizer(said):
-    return any(mark in said for mark in ("ERROR: AddressSanitizer", "runtime error:", "(status 99)"))
+    return any(mark in said for mark in ("SUMMARY: AddressSanitizer", "runtime error:", "(status 99)"))
 
 
 def opened(name, path):

@@ -492,10 +492,11 @@ g_options = None
 
 
 def prepare(options):
-    global g_options
+    global g_options, g_opener
     g_options = options
+    g_opener = None  # each process needs one of its own
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    if options.address_space > 0:
+    if options.address_space > 0 and not is_opener(options.program):
         bytes_ = int(options.address_space * 2**30)
         resource.setrlimit(resource.RLIMIT_AS, (bytes_, bytes_))
 

@@ -3,7 +3,6 @@
 import json
 import os
 import select
-import signal
 import subprocess
 import tempfile
 import time
@@ -45,7 +44,7 @@ class Opener:
         begin = time.monotonic()
         while not select.select([self.process.stdout], [], [], 1.0)[0]:
             if time.monotonic() - begin > self.wall:
-                self.process.send_signal(signal.SIGABRT)
+                self.process.kill()
                 answer = self._ended()
                 answer.said = "still runs after %d s; %s" % (self.wall, answer.said)
                 return answer

@@ -14,6 +14,7 @@
 #include "dialogs/series_dialog.h"
 #include "dialogs/series_files.h"
 #include "render/memory_needs.h"
+#include "report/session_picture.h"
 #include "services/recent_files.h"
 #include "services/services.h"
 #include "session/scene_data.h"
@@ -39,7 +40,9 @@ constexpr QSize kMenuPicture{64, 48}; // logical pixels
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
 bool isTf(const QString& path) { return pellucid::isTfFile(path.toStdString()); }
-bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
+bool isSessionFile(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
+/// A session file, or a picture that carries one.
+bool isSession(const QString& path) { return isSessionFile(path) || carriesSession(path.toStdString()); }
 
 VolumeSource sourceAt(const QString& path) {
     VolumeSource source;
@@ -169,7 +172,7 @@ void OpenController::openVolume(const VolumeSource& source, const QString& tfSpe
 
 void OpenController::openSession(const QString& path) {
     attempt(tr("Cannot open the session"), [&] {
-        SessionFile file = readSession(path.toStdString());
+        SessionFile file = readSessionOrPicture(path.toStdString());
         Request request;
         request.inputs.session = std::move(file.session);
         request.notices = std::move(file.notices);
@@ -253,7 +256,8 @@ void OpenController::show(const Request& request, Opened& opened) {
     keepRecentPicture(m_services, m_saving.sessionPath()); // of what is open until now
     m_services.store().open(std::move(opened.scene));
     if (request.unsaved) m_services.store().setUnsaved();
-    m_saving.setSessionPath(request.sessionPath);
+    // What is saved later does not go into the picture that it came with.
+    m_saving.setSessionPath(isSessionFile(request.sessionPath) ? request.sessionPath : QString());
     if (!request.sessionPath.isEmpty()) {
         addRecent(QFileInfo(request.sessionPath).absoluteFilePath());
     } else if (!source.isSample() && !request.unsaved) {
@@ -415,7 +419,7 @@ void OpenController::openPaths(QStringList paths) {
         QString tf;
         QStringList volumes;
         for (const QString& path : paths) {
-            if (isSession(path))
+            if (isSessionFile(path)) // pictures, several, are the slices of a volume, whatever they carry
                 throw UsageError("a session must be opened by itself", path.toStdString(), "choose one file");
             if (isTf(path)) {
                 if (!tf.isEmpty())

@@ -37,8 +37,8 @@ public:
     void openRecovered(const SessionFile& file, const std::function<void()>& then);
     /// Into the present session, at once.
     void openTf(const QString& specOrPath);
-    /// A path from the user: a session or a transfer function by its name, else a volume; what no format knows asks for
-    /// its layout. Asks about unsaved work.
+    /// A path from the user: a session or a transfer function by its name, or a picture that carries a session, else a
+    /// volume; what no format knows asks for its layout. Asks about unsaved work.
     void openPath(const QString& path);
     /// Several at once: one is as openPath(); volumes are the frames of one series, in the order in which people count;
     /// a transfer function among them is opened with them.

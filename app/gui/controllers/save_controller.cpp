@@ -9,15 +9,20 @@
 #include <QClipboard>
 #include <QMessageBox>
 
+#include "base/memory.h"
+#include "base/text.h"
 #include "controllers/field_controller.h"
 #include "controllers/picture_saliency_controller.h"
 #include "controllers/ruler_controller.h"
 #include "dialogs/ask_file.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
+#include "image_io/layer_files.h"
 #include "render/annotation_raster.h"
+#include "render/picture_layers.h"
 #include "report/drawing_file.h"
 #include "report/report.h"
+#include "report/session_picture.h"
 #include "report/share_bars.h"
 #include "report/tf_plot.h"
 #include "services/services.h"
@@ -64,11 +69,7 @@ SaveController::SaveController(Services& services, FieldController& fields,
     : m_services(services), m_fields(fields), m_pictureSaliency(pictureSaliency), m_rulers(rulers),
       m_images(
           [](const Picture& picture, const JobControl& job) {
-              const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
-              Image image = renderer->render(picture.input.camera, picture.input.tf, picture.input.settings, job);
-              job.throwIfStopped();
-              if (picture.around.show.any()) drawMarks(image, annotationMarks(picture.around));
-              writeImage(image, picture.path.toStdString());
+              write(picture, job);
               return picture.path;
           },
           [this](const Picture&, const QString& path) {
@@ -127,8 +128,8 @@ void SaveController::addActions() {
                 "TIFF or OME-Zarr"),
              [this] { chooseVolume(); });
     menu.separate();
-    menu.add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), [this] { chooseImage(); },
-             {.inToolBar = true});
+    menu.add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture, or its layers"),
+             [this] { chooseImage(); }, {.inToolBar = true});
     m_barsAction =
         menu.add("saveBarsAction", tr("Save &bars…"), {},
                  tr("How much of each feature is seen and catches the eye, as bar charts in the features' colours"),
@@ -200,10 +201,61 @@ bool SaveController::saveTfDrawing(const QString& path) {
     });
 }
 
+void SaveController::write(const Picture& picture, const JobControl& job) {
+    const std::string path = picture.path.toStdString();
+    PictureText text = picture.text;
+    const PictureInput& input = picture.input;
+    if (picture.layers) {
+        if (picture.carries) text.session = sessionText(picture.scene, path);
+        const PictureLayers layers =
+            pictureLayers(input.volume, input.camera, input.tf, input.settings, job.part(0, 2));
+        return writeLayers(layers, input.tf.features, path, text, job.part(1, 2));
+    }
+    const auto renderer = makeRenderer(EngineChoice::Auto, input.volume);
+    Image image = renderer->render(input.camera, input.tf, input.settings, job);
+    job.throwIfStopped();
+    if (picture.around.show.any()) drawMarks(image, annotationMarks(picture.around));
+    if (picture.carries) text.session = sessionText(picture.scene, path);
+    if (text.session.empty()) text.command.clear(); // it is about the session in the file
+    writeImage(image, path, text);
+}
+
+PictureText SaveController::describe(const SaveImageOptions& options) const {
+    if (!options.described) return {};
+    const Results& results = m_services.results();
+    const Measures* const current = results.measures() && results.measuresAreCurrent() ? results.measures() : nullptr;
+    const OcclusionMatrix* const hides = current && results.influenceIsCurrent() ? results.occlusion() : nullptr;
+    const CaptionFacts facts =
+        captionFacts(m_services.scene(), current ? *current : Measures{}, hides ? *hides : OcclusionMatrix{});
+    PictureText text{std::string("Pellucid ") + kVersion, caption(facts), {}, {}};
+    if (m_fields.field() != nullptr) text.description += " Field: " + m_fields.name().toStdString() + ".";
+    const QFileInfo file(options.path);
+    if (options.layers || file.suffix().compare("png", Qt::CaseInsensitive) != 0) return text;
+    QString command = QStringLiteral("pellucid-cli render --session '%1' --size %2x%3")
+                          .arg(file.fileName().replace('\'', QStringLiteral("'\\''")))
+                          .arg(options.size.width())
+                          .arg(options.size.height());
+    if (options.transparent) command += QStringLiteral(" --background transparent");
+    if (options.annotated) {
+        QStringList parts;
+        for (const AnnotationPartInfo& part : kAnnotationParts)
+            if (const AnnotationChoice& shown = *m_services.scene().session.reference; shown.on && shown.*part.shown)
+                parts << QString::fromUtf8(part.name);
+        if (!parts.isEmpty()) command += QStringLiteral(" --annotate ") + parts.join(',');
+    }
+    text.command = printable((command + QStringLiteral(" --out picture.png")).toStdString());
+    return text;
+}
+
 void SaveController::saveImage(const SaveImageOptions& options) {
     if (!m_services.store().hasVolume()) return;
-    Picture picture{
-        m_fields.picture(options.size.width(), options.size.height(), options.transparent), {}, options.path};
+    Picture picture{m_fields.picture(options.size.width(), options.size.height(), options.transparent),
+                    {},
+                    options.path,
+                    describe(options),
+                    m_services.scene(),
+                    options.described,
+                    options.layers};
     if (options.annotated) {
         picture.around = m_fields.annotation(picture.input, *m_services.scene().session.reference);
         addMeasures(picture.around, m_services.scene(), m_rulers.readings());
@@ -212,7 +264,15 @@ void SaveController::saveImage(const SaveImageOptions& options) {
     }
     const bool good = m_services.attempt(tr("Cannot save the image"), [&] {
         picture.input.settings.validate();
-        checkImageSuffix(options.path.toStdString());
+        const std::string path = options.path.toStdString();
+        if (!options.layers) return checkImageSuffix(path);
+        if (m_fields.field() != nullptr)
+            throw UsageError("a field has no layers", "the picture", "draw the data, or save the picture");
+        checkLayersPath(path);
+        checkLayers(picture.input.tf, picture.input.settings);
+        requireMemory("layers of this size", path,
+                      static_cast<std::uint64_t>(2 * bytesOfLayers(options.size.width(), options.size.height(),
+                                                                   picture.input.tf.features.size())));
     });
     if (!good) return;
     m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());
@@ -351,7 +411,7 @@ void SaveController::chooseImage() {
     const QString folder = keptFolder("imageFolder", QDir::homePath());
     SaveImageDialog dialog(QDir(folder).filePath(baseName(m_services.scene()) + ".png"), m_seen,
                            m_services.scene().session.reference->any() || m_fields.field() != nullptr,
-                           m_services.window());
+                           m_fields.field() == nullptr, m_services.window());
     while (dialog.exec() == QDialog::Accepted) {
         const SaveImageOptions options = dialog.options();
         if (options.path.isEmpty()) continue;

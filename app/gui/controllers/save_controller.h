@@ -5,6 +5,7 @@
 
 #include "dialogs/save_image_dialog.h"
 #include "dialogs/save_volume_dialog.h"
+#include "image_io/picture_text.h"
 #include "jobs/job.h"
 #include "session/scene.h"
 
@@ -74,7 +75,13 @@ private:
         PictureInput input;
         AnnotationInput around; ///< shows nothing where nothing is wanted
         QString path;
+        PictureText text; ///< but for the session
+        Scene scene;      ///< whose session the file carries, where `carries`
+        bool carries = false, layers = false;
     };
+    /// What the file says of the picture of the present scene.
+    PictureText describe(const SaveImageOptions& options) const;
+    static void write(const Picture& picture, const JobControl& job);
     struct ReportTask {
         Run run;
         Scene now;

@@ -43,7 +43,8 @@ AxesDialog::AxesDialog(const GridAxes& now, const Int3& dims, QWidget* parent) :
     form->addRow(what);
     form->addRow(m_patient);
     for (int a = 0; a < 3; ++a) {
-        auto* combo = named(new QComboBox(this), QStringLiteral("axesAlong") + QChar("ijk"[a]));
+        auto* combo = named(new QComboBox(this), QStringLiteral("axesAlong") + QChar("ijk"[a]),
+                            tr("Which way this axis of the data runs in the world, or in the patient"));
         m_along[static_cast<std::size_t>(a)] = combo;
         form->addRow(tr("Axis %1, %L2 voxels, points to").arg(QChar("ijk"[a])).arg(dims[a]), combo);
         connect(combo, &QComboBox::currentIndexChanged, this, &AxesDialog::check);

@@ -59,8 +59,10 @@ int paletteScore(const QString& typed, const QString& text, const QString& place
 }
 
 CommandPalette::CommandPalette(std::vector<ActionRow> rows, QWidget* parent)
-    : QDialog(parent), m_rows(std::move(rows)), m_find(named(new QLineEdit(this), "paletteFind")),
-      m_list(named(new QTreeWidget(this), "paletteList")) {
+    : QDialog(parent), m_rows(std::move(rows)),
+      m_find(named(new QLineEdit(this), "paletteFind",
+                   tr("A few letters of what you want; Up and Down choose, Return does it"))),
+      m_list(named(new QTreeWidget(this), "paletteList", tr("What can be done, with its menu and its keys"))) {
     setObjectName("commandPalette");
     setWindowTitle(tr("Do something"));
     m_find->setPlaceholderText(tr("What do you want to do?"));

@@ -21,8 +21,10 @@ constexpr auto kFormatKey = "exportedTfFormat";
 } // namespace
 
 ExportTfDialog::ExportTfDialog(const QString& path, std::function<QStringList(const TfFormat&)> losses, QWidget* parent)
-    : QDialog(parent), m_losses(std::move(losses)), m_format(named(new QComboBox(this), "exportTfFormat")),
-      m_path(named(new QLineEdit(path, this), "exportTfPath")), m_lost(named(new QLabel(this), "exportTfLosses")) {
+    : QDialog(parent), m_losses(std::move(losses)),
+      m_format(named(new QComboBox(this), "exportTfFormat", tr("The program that is to read it"))),
+      m_path(named(new QLineEdit(path, this), "exportTfPath", tr("Where the file goes"))),
+      m_lost(named(new QLabel(this), "exportTfLosses")) {
     setObjectName("exportTfDialog");
     setWindowTitle(tr("Export transfer function"));
     m_path->setMinimumWidth(380);
@@ -37,8 +39,7 @@ ExportTfDialog::ExportTfDialog(const QString& path, std::function<QStringList(co
     m_format->setCurrentIndex(std::max(0, kept));
     connect(m_format, &QComboBox::currentIndexChanged, this, &ExportTfDialog::showFormat);
 
-    auto* browse = new QPushButton(tr("Browse…"), this);
-    browse->setAutoDefault(false);
+    auto* browse = browseButton(*this);
     connect(browse, &QPushButton::clicked, this, [this] {
         const QString chosen =
             QFileDialog::getSaveFileName(this, tr("Export transfer function"), m_path->text(), m_format->currentText(),
@@ -48,7 +49,7 @@ ExportTfDialog::ExportTfDialog(const QString& path, std::function<QStringList(co
     auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});
     form->setVerticalSpacing(9);
     form->addRow(tr("For"), m_format);
-    form->addRow(tr("File"), rowOf({{m_path, 1}, browse}));
+    addRow(*form, tr("&File"), m_path, rowOf({{m_path, 1}, browse}));
     form->addRow(tr("What is lost"), m_lost);
     form->addRow(closingButtons(*this, QDialogButtonBox::Save | QDialogButtonBox::Cancel));
     showFormat();

@@ -31,7 +31,7 @@ const Setting& filmSetting(const char* key) { return settingOf(settingsOf<FilmSe
 FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series, bool annotated, QWidget* parent)
     : QDialog(parent), m_series(series), m_offered(offered.settings),
       m_kind(named(new QComboBox(this), "filmKind", QString::fromUtf8(filmSetting("kind").help))),
-      m_preset(named(new QComboBox(this), "filmPreset")),
+      m_preset(named(new QComboBox(this), "filmPreset", tr("Sizes that are often wanted"))),
       m_seconds(numberBox("seconds", &FilmSettings::seconds, "filmSeconds", 2)),
       m_degrees(numberBox("degrees", &FilmSettings::degrees, "filmDegrees", 0)),
       m_rate(numberBox("fps", &FilmSettings::framesPerSecond, "filmRate", 2)),
@@ -42,7 +42,8 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
                    tr("A name that ends in .mp4, .webm or .gif makes a film, for which ffmpeg must be installed, one\n"
                       "in .apng an animated picture without loss; any other is a folder, which gets the pictures one\n"
                       "by one: picture_00000.png and so on"))),
-      m_width(named(new QSpinBox(this), "filmWidth")), m_height(named(new QSpinBox(this), "filmHeight")),
+      m_width(named(new QSpinBox(this), "filmWidth", tr("Width of the film, pixels"))),
+      m_height(named(new QSpinBox(this), "filmHeight", tr("Height of the film, pixels"))),
       m_annotated(named(new QCheckBox(tr("With &annotations"), this), "filmAnnotated",
                         tr("What the window shows around the picture: View → Annotations"))),
       m_summary(named(new QLabel(this), "filmSummary")) {
@@ -64,10 +65,10 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
     makeSizes(seen);
     auto* const addView =
         named(new QPushButton(tr("Add present view"), this), "filmAddView", tr("Append the view that the window has"));
-    auto* const browseButton = new QPushButton(tr("Browse…"), this);
-    for (QPushButton* button : {addView, browseButton}) button->setAutoDefault(false);
+    auto* const browse = browseButton(*this);
+    addView->setAutoDefault(false);
     connect(addView, &QPushButton::clicked, this, &FilmDialog::addPresentView);
-    connect(browseButton, &QPushButton::clicked, this, &FilmDialog::browse);
+    connect(browse, &QPushButton::clicked, this, &FilmDialog::browse);
 
     auto* const note = wrappedLabel("filmFormats", this);
     note->setText(tr("Names that end in .mp4, .webm or .gif make a film, which needs ffmpeg; .apng needs none. Any "
@@ -80,12 +81,15 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
     auto* const views = new QWidget(this);
     views->setLayout(inset(rowOf({{m_views, 1}, addView}), {}));
     form->addRow(tr("&Views"), views);
+    m_views->setAccessibleName(tr("Views"));
+    m_width->setAccessibleName(tr("Width"));
+    m_height->setAccessibleName(tr("Height"));
     form->addRow(tr("&Length"), m_seconds);
     form->addRow(tr("&Frames per second"), m_rate);
     form->addRow(tr("Size"), m_preset);
     form->addRow(QString(), rowOf({m_width, new QLabel(QStringLiteral("×"), this), m_height, Cell::rest()}));
     form->addRow(QString(), m_annotated);
-    addRow(*form, tr("&File or folder"), m_path, rowOf({{m_path, 1}, browseButton}));
+    addRow(*form, tr("&File or folder"), m_path, rowOf({{m_path, 1}, browse}));
     form->addRow(QString(), note);
     form->addRow(QString(), m_summary);
     form->addRow(closingButtons(*this, QDialogButtonBox::Save | QDialogButtonBox::Cancel));

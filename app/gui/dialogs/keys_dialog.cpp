@@ -26,7 +26,9 @@ QAction* actionOf(const QTreeWidgetItem& item) {
 
 KeysDialog::KeysDialog(std::vector<ActionRow> rows, Keys keys, QWidget* parent)
     : QDialog(parent), m_rows(std::move(rows)), m_keys(std::move(keys)),
-      m_find(named(new QLineEdit(this), "keysDialogFind")), m_list(named(new QTreeWidget(this), "keysDialogList")),
+      m_find(
+          named(new QLineEdit(this), "keysDialogFind", tr("Lists what has these letters in its name, menu or keys"))),
+      m_list(named(new QTreeWidget(this), "keysDialogList", tr("Actions with their keys; bold: changed"))),
       m_edit(named(new QKeySequenceEdit(this), "keysDialogKey",
                    tr("Press the key that is to do it, with Ctrl, Shift or Alt"))),
       m_conflict(named(new QLabel(this), "keysDialogConflict")),
@@ -40,6 +42,9 @@ KeysDialog::KeysDialog(std::vector<ActionRow> rows, Keys keys, QWidget* parent)
     setObjectName("keysDialog");
     setWindowTitle(tr("Keyboard shortcuts"));
     m_find->setPlaceholderText(tr("Find an action or a key"));
+    m_find->setAccessibleName(tr("Find an action or a key"));
+    m_list->setAccessibleName(tr("Actions and keys"));
+    m_edit->setAccessibleName(tr("New key"));
     m_find->setClearButtonEnabled(true);
     m_list->setHeaderLabels({tr("Action"), tr("Menu"), tr("Keys")});
     m_list->setRootIsDecorated(false);

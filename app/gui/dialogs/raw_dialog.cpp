@@ -64,10 +64,13 @@ RawDialog::RawDialog(const QStringList& paths, QWidget* parent)
     const RawLayout guess = rawLayoutInName(m_path.toStdString(), static_cast<std::uint64_t>(m_bytes));
     for (int i = 0; i < 3; ++i) {
         const QChar axis = "xyz"[i];
-        m_dims[i] = named(new QSpinBox(this), QStringLiteral("rawDim") + axis);
+        m_dims[i] = named(new QSpinBox(this), QStringLiteral("rawDim") + axis, tr("Voxels along %1").arg(axis));
+        m_dims[i]->setAccessibleName(tr("Voxels along %1").arg(axis));
         m_dims[i]->setRange(1, 65536);
         m_dims[i]->setValue(guess.dims[i]);
-        m_spacing[i] = named(new QDoubleSpinBox(this), QStringLiteral("rawSpacing") + axis);
+        m_spacing[i] = named(new QDoubleSpinBox(this), QStringLiteral("rawSpacing") + axis,
+                             tr("Distance of voxels along %1, in units of the world, such as mm").arg(axis));
+        m_spacing[i]->setAccessibleName(tr("Spacing along %1").arg(axis));
         m_spacing[i]->setDecimals(6);
         m_spacing[i]->setRange(1e-6, 1e9);
         m_spacing[i]->setValue(1);
@@ -76,10 +79,10 @@ RawDialog::RawDialog(const QStringList& paths, QWidget* parent)
         connect(m_dims[i], &QSpinBox::valueChanged, this, &RawDialog::check);
         connect(m_dims[i], &QSpinBox::editingFinished, this, [this] { m_isTouched = true; });
     }
-    m_type = named(new QComboBox(this), "rawType");
+    m_type = named(new QComboBox(this), "rawType", tr("How one sample is stored"));
     for (int i = 0; i < kTypes; ++i) m_type->addItem(typeText(static_cast<SampleType>(i)), i);
     m_type->setCurrentIndex(static_cast<int>(guess.type));
-    m_endian = named(new QComboBox(this), "rawEndian");
+    m_endian = named(new QComboBox(this), "rawEndian", tr("Order of the bytes of a sample"));
     m_endian->addItems({tr("little endian (PC)"), tr("big endian")});
     m_skip = named(new QDoubleSpinBox(this), "rawSkip", tr("Bytes before the first voxel"));
     m_skip->setDecimals(0);

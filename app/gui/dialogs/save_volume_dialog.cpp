@@ -31,8 +31,9 @@ QString savedVolumeFilters() {
 }
 
 SaveVolumeDialog::SaveVolumeDialog(const QString& path, const SavableVolume& there, QWidget* parent)
-    : QDialog(parent), m_there(there), m_path(named(new QLineEdit(path, this), "volumePath")),
-      m_what(named(new QComboBox(this), "volumeWhat")),
+    : QDialog(parent), m_there(there), m_path(named(new QLineEdit(path, this), "volumePath",
+                                                    tr("Where the volume goes; the suffix says in which format"))),
+      m_what(named(new QComboBox(this), "volumeWhat", tr("The data as they were opened, or the field that is drawn"))),
       m_frames(named(new QComboBox(this), "volumeFrames",
                      tr("All frames go into one file, with their times. As VTK image data each gets a file of its own, "
                         "and a collection (.pvd) names them."))),
@@ -58,12 +59,11 @@ SaveVolumeDialog::SaveVolumeDialog(const QString& path, const SavableVolume& the
     for (int type = 0; type <= static_cast<int>(SampleType::F64); ++type)
         m_type->addItem(QString::fromLatin1(name(static_cast<SampleType>(type))), type);
 
-    auto* button = new QPushButton(tr("Browse…"), this);
-    button->setAutoDefault(false);
+    auto* button = browseButton(*this);
     connect(button, &QPushButton::clicked, this, &SaveVolumeDialog::browse);
     auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});
     form->setVerticalSpacing(9);
-    form->addRow(tr("File"), rowOf({{m_path, 1}, button}));
+    addRow(*form, tr("&File"), m_path, rowOf({{m_path, 1}, button}));
     form->addRow(tr("What"), m_what);
     form->addRow(tr("Frames"), m_frames);
     form->addRow(tr("Part"), m_clipped);

@@ -24,8 +24,9 @@ SeriesDialog::SeriesDialog(const QString& folder, QWidget* parent)
              "steps"));
     m_path->setMinimumWidth(380);
     m_path->setPlaceholderText(tr("folder, or pattern such as run/f%03d.mhd or run/f*.mhd"));
-    auto* folderButton = named(new QPushButton(tr("F&older…"), this), "seriesFolder");
-    auto* filesButton = named(new QPushButton(tr("&Files…"), this), "seriesFiles");
+    auto* folderButton = named(new QPushButton(tr("F&older…"), this), "seriesFolder", tr("All volumes of a folder"));
+    auto* filesButton = named(new QPushButton(tr("&Files…"), this), "seriesFiles",
+                              tr("Files one by one, in the order in which people count"));
     named(m_first, "seriesFirst", tr("First frame, counted from 0"))->setPrefix(tr("from "));
     named(m_last, "seriesLast", tr("Last frame, included"))->setPrefix(tr("to "));
     named(m_every, "seriesEvery", tr("Every n-th of these frames"))->setPrefix(tr("every "));
@@ -34,10 +35,13 @@ SeriesDialog::SeriesDialog(const QString& folder, QWidget* parent)
     m_ok = named(buttons->button(QDialogButtonBox::Open), "seriesOpen");
     auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});
     form->setVerticalSpacing(9);
-    form->addRow(tr("Frames of"), rowOf({{m_path, 1}, folderButton, filesButton}));
+    addRow(*form, tr("F&rames of"), m_path, rowOf({{m_path, 1}, folderButton, filesButton}));
     form->addRow(tr("Only"), rowOf({{m_first, 1}, {m_last, 1}, {m_every, 1}}));
     form->addRow(m_found);
     form->addRow(buttons);
+    m_first->setAccessibleName(tr("First frame"));
+    m_last->setAccessibleName(tr("Last frame"));
+    m_every->setAccessibleName(tr("Every n-th frame"));
     setRange(0);
 
     connect(m_path, &QLineEdit::textEdited, this, [this] {

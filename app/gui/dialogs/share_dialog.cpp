@@ -32,8 +32,10 @@ QString textOf(const ShareEstimate& size) {
 } // namespace
 
 ShareDialog::ShareDialog(const ShareOptions& offered, Estimate estimate, QWidget* parent)
-    : QDialog(parent), m_estimate(std::move(estimate)), m_title(named(new QLineEdit(this), "shareTitle")),
-      m_path(named(new QLineEdit(offered.path, this), "sharePath")),
+    : QDialog(parent), m_estimate(std::move(estimate)),
+      m_title(named(new QLineEdit(this), "shareTitle", tr("What stands above the page, and is its name in a browser"))),
+      m_path(named(new QLineEdit(offered.path, this), "sharePath",
+                   tr("Where the page goes, one file that ends in .html"))),
       m_size(named(new QComboBox(this), "shareSize", tr("Each voxel of a coarser volume is the mean of several"))),
       m_bits(
           named(new QComboBox(this), "shareBits",
@@ -42,16 +44,16 @@ ShareDialog::ShareDialog(const ShareOptions& offered, Estimate estimate, QWidget
       m_density(named(new QCheckBox(tr("With a slider for the &density"), this), "shareDensity",
                       tr("Fainter and stronger pictures in which each feature keeps its share of saliency;\n"
                          "they are searched for first"))),
-      m_allowed(named(new QCheckBox(tr("I &may share these voxels"), this), "shareAllowed")) {
+      m_allowed(named(new QCheckBox(tr("I &may share these voxels"), this), "shareAllowed",
+                      tr("The page is written only when you have said so"))) {
     setObjectName("shareDialog");
     setWindowTitle(tr("Share as web page"));
     m_title->setPlaceholderText(QString::fromStdString(offered.settings.title));
     m_path->setMinimumWidth(360);
     for (const char* bits : settingOf(settingsOf<ShareSettings>(), "bits").choices) m_bits->addItem(tr(bits));
     m_density->setChecked(offered.settings.density == ShareDensity::On);
-    auto* const browseButton = new QPushButton(tr("Browse…"), this);
-    browseButton->setAutoDefault(false);
-    connect(browseButton, &QPushButton::clicked, this, &ShareDialog::browse);
+    auto* const browse = browseButton(*this);
+    connect(browse, &QPushButton::clicked, this, &ShareDialog::browse);
 
     auto* const about = wrappedLabel("shareAbout", this);
     about->setText(
@@ -69,7 +71,7 @@ ShareDialog::ShareDialog(const ShareOptions& offered, Estimate estimate, QWidget
     form->addRow(tr("&Size"), m_size);
     form->addRow(tr("&Bits"), m_bits);
     form->addRow(QString(), m_density);
-    addRow(*form, tr("&File"), m_path, rowOf({{m_path, 1}, browseButton}));
+    addRow(*form, tr("&File"), m_path, rowOf({{m_path, 1}, browse}));
     form->addRow(privacy);
     form->addRow(m_allowed);
     auto* const buttons = closingButtons(*this, QDialogButtonBox::Save | QDialogButtonBox::Cancel);

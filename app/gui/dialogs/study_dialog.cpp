@@ -29,8 +29,11 @@ bool isLong(const Setting& setting) {
 } // namespace
 
 StudyDialog::StudyDialog(Study study, QWidget* parent)
-    : QDialog(parent), m_study(std::move(study)), m_width(named(new QSpinBox(this), "studyWidth")),
-      m_height(named(new QSpinBox(this), "studyHeight")), m_stimuli(named(new QTableWidget(this), "studyStimuli")) {
+    : QDialog(parent), m_study(std::move(study)),
+      m_width(named(new QSpinBox(this), "studyWidth", tr("Width of the pictures, pixels"))),
+      m_height(named(new QSpinBox(this), "studyHeight", tr("Height of the pictures, pixels"))),
+      m_stimuli(named(new QTableWidget(this), "studyStimuli",
+                      tr("The views that are shown, the feature each asks about, and its word in the question"))) {
     setObjectName("studyDialog");
     setWindowTitle(tr("Study"));
     auto* form = new QFormLayout;
@@ -41,13 +44,17 @@ StudyDialog::StudyDialog(Study study, QWidget* parent)
         box->setRange(kSmallestPicture, kMostPixels);
         box->setSuffix(tr(" px"));
     }
+    m_stimuli->setAccessibleName(tr("Stimuli"));
+    m_height->setAccessibleName(tr("Height"));
     m_width->setValue(m_study.width);
     m_height->setValue(m_study.height);
     addRow(*form, tr("Si&ze"), m_width,
            rowOf({m_width, new QLabel(QStringLiteral("×"), this), m_height, Cell::rest()}));
     auto* labels = rowOf({});
     for (int score = kLowestScore; score <= kHighestScore; ++score) {
-        auto* edit = named(new QLineEdit(this), QStringLiteral("studyScore%1").arg(score));
+        auto* edit = named(new QLineEdit(this), QStringLiteral("studyScore%1").arg(score),
+                           tr("What score %1 is called").arg(score));
+        edit->setAccessibleName(tr("Score %1").arg(score));
         edit->setPlaceholderText(QString::number(score));
         if (const auto at = m_study.labels.find(score); at != m_study.labels.end())
             edit->setText(QString::fromStdString(at->second));

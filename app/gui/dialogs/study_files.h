@@ -20,7 +20,9 @@ inline QString withStudySuffix(const QString& path) {
 inline QLayout* preparedStudyRow(QLineEdit& edit, QDialog& dialog) {
     edit.setMinimumWidth(340);
     auto* browse = new QPushButton(QCoreApplication::translate("Study", "Browse…"), &dialog);
+    browse->setToolTip(QCoreApplication::translate("Study", "Choose it among the folders of this machine"));
     browse->setAutoDefault(false);
+    edit.setAccessibleName(QCoreApplication::translate("Study", "Prepared study"));
     QObject::connect(browse, &QPushButton::clicked, &dialog, [&edit, &dialog] {
         const QString title = QCoreApplication::translate("Study", "Prepared study");
         const QString chosen = QFileDialog::getExistingDirectory(&dialog, title, edit.text());

@@ -16,7 +16,8 @@
 namespace pellucid::gui {
 
 StudyRunDialog::StudyRunDialog(const QString& folder, QWidget* parent)
-    : QDialog(parent), m_folder(named(new QLineEdit(folder, this), "studyFolder")),
+    : QDialog(parent),
+      m_folder(named(new QLineEdit(folder, this), "studyFolder", tr("The folder that a study was prepared into"))),
       m_participant(named(new QComboBox(this), "studyParticipant",
                           tr("A new participant gets a name that tells nothing; one who has begun goes on"))),
       m_about(wrappedLabel("studyAbout", this)),

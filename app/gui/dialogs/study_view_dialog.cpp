@@ -15,10 +15,11 @@
 namespace pellucid::gui {
 
 StudyViewDialog::StudyViewDialog(const QString& study, const QStringList& features, int selected, QWidget* parent)
-    : QDialog(parent), m_study(named(new QLineEdit(study, this), "studyFile")),
+    : QDialog(parent),
+      m_study(named(new QLineEdit(study, this), "studyFile", tr("The study that gets the view; a new one is begun"))),
       m_label(named(new QLineEdit(this), "studyLabel",
                     tr("The word in the question, such as RED: a colour that everyone finds in the picture"))),
-      m_feature(named(new QComboBox(this), "studyFeature")),
+      m_feature(named(new QComboBox(this), "studyFeature", tr("The feature that participants are asked about"))),
       m_training(named(new QCheckBox(tr("For &practice only"), this), "studyTraining",
                        tr("Shown before the others, and left out of the analysis"))) {
     setObjectName("studyViewDialog");
@@ -30,8 +31,7 @@ StudyViewDialog::StudyViewDialog(const QString& study, const QStringList& featur
     connect(m_feature, &QComboBox::currentIndexChanged, this, offer);
     offer();
 
-    auto* browse = new QPushButton(tr("Browse…"), this);
-    browse->setAutoDefault(false);
+    auto* browse = browseButton(*this);
     connect(browse, &QPushButton::clicked, this, [this] {
         const QString chosen = QFileDialog::getSaveFileName(this, tr("Study"), m_study->text(), studyFilter(), nullptr,
                                                             QFileDialog::DontConfirmOverwrite);

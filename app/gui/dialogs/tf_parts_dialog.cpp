@@ -12,9 +12,12 @@
 namespace pellucid::gui {
 
 TfPartsDialog::TfPartsDialog(const QString& name, const TfParts& has, const QStringList& notices, QWidget* parent)
-    : QDialog(parent), m_colors(named(new QCheckBox(tr("&Colours"), this), "tfPartColors")),
-      m_opacities(named(new QCheckBox(tr("&Opacities, with their features"), this), "tfPartOpacities")),
-      m_range(named(new QCheckBox(tr("&Range of values"), this), "tfPartRange")) {
+    : QDialog(parent), m_colors(named(new QCheckBox(tr("&Colours"), this), "tfPartColors",
+                                      tr("The colours of the file, along its values"))),
+      m_opacities(named(new QCheckBox(tr("&Opacities, with their features"), this), "tfPartOpacities",
+                        tr("How opaque each value is, and the features that follow from it"))),
+      m_range(named(new QCheckBox(tr("&Range of values"), this), "tfPartRange",
+                    tr("The values that the file is written for"))) {
     setObjectName("tfPartsDialog");
     setWindowTitle(tr("Open parts of a transfer function"));
     auto* column = inset(new QVBoxLayout(this), {18, 16, 18, 12});

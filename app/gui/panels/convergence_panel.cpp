@@ -102,7 +102,8 @@ PanelInfo convergencePanel() {
 ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optimizing, SaveController& saving,
                                    QWidget* parent)
     : QWidget(parent), m_services(services), m_optimizing(optimizing), m_saving(saving),
-      m_row(new QBoxLayout(QBoxLayout::LeftToRight)), m_list(named(new QTreeWidget(this), "runList")),
+      m_row(new QBoxLayout(QBoxLayout::LeftToRight)),
+      m_list(named(new QTreeWidget(this), "runList", tr("Optimizations, the latest first; a selected one is drawn"))),
       m_log(named(new QCheckBox(tr("Logarithmic"), this), "convergenceLog", tr("F and opacities on logarithmic axes"))),
       m_readOut(withAnyWidth(named(new QLabel(this), "convergenceReadOut"))),
       m_start(named(toolButton(tr("To the start"), this), "showStart",
@@ -116,6 +117,7 @@ ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optim
         m_export->menu()
             ->addAction(text, this, [this, suffix = QString(suffix)] { chooseFile(suffix); })
             ->setObjectName(QStringLiteral("exportCurves_%1").arg(suffix));
+    m_list->setAccessibleName(tr("Optimizations"));
     makePlots();
     makeList();
     m_row->addLayout(columnOf({{m_list, 1}, rowOf({m_log, Cell::rest(), m_start, m_export})}));

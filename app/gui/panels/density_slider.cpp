@@ -39,7 +39,8 @@ QString textOf(double share) { return QString::fromStdString(percentText(share))
 } // namespace
 
 DensitySlider::DensitySlider(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_slider(named(new QSlider(Qt::Horizontal, this), "densitySlider")),
+    : QWidget(parent), m_services(services),
+      m_slider(named(new QSlider(Qt::Horizontal, this), "densitySlider", tr("How solid the picture is, in % opaque"))),
       m_value(named(new QLabel(this), "densityValue")),
       m_all(named(toolButton(tr("Scale all"), this), "densityAll",
                   tr("Scale all opacities alike instead: the extinction times a factor; the shares change"))),

@@ -192,7 +192,7 @@ private:
     Services& m_services;
     Controllers& m_controllers;
     FeaturesModel* m_model = new FeaturesModel(m_services.store(), m_services.results(), this);
-    QTableView* m_table = named(new QTableView(this), "featuresTable");
+    QTableView* m_table = named(new QTableView(this), "featuresTable", tr("Features: intervals of values with a name"));
     TargetBars* m_bars = new TargetBars(m_services.store(), m_services.results());
     DensitySlider* m_density = new DensitySlider(m_services, this);
     QToolButton* m_add = named(menuButton(tr("Add"), this), "addShapeButton",
@@ -237,6 +237,7 @@ private:
 FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent)
     : QWidget(parent), m_services(services), m_controllers(controllers) {
     setObjectName("featuresPanel");
+    m_table->setAccessibleName(tr("Features"));
     prepareTable();
     elideInTheMiddle(*m_table);
     m_add->menu()->addActions(m_controllers.features.shapes());

@@ -67,7 +67,7 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
       m_take(named(new QComboBox(this), "galleryTake",
                    tr("What is taken of a preset: everything, its colours under the present opacities,\n"
                       "or its opacities in the present colours"))),
-      m_list(named(new QListWidget(this), "galleryList")),
+      m_list(named(new QListWidget(this), "galleryList", tr("Presets, drawn with this volume"))),
       m_keep(named(toolButton(tr("Save as preset…"), this), "galleryKeep",
                    tr("Keeps the present transfer function, with its opacities, as a preset of your own"))),
       m_remove(named(toolButton(tr("Remove"), this), "galleryRemove",
@@ -87,6 +87,9 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
           },
           [](const Task&, int&) {}) {
     setObjectName("galleryPanel");
+    m_group->setAccessibleName(tr("Presets listed"));
+    m_take->setAccessibleName(tr("What is taken"));
+    m_list->setAccessibleName(tr("Presets"));
     m_take->addItems({tr("Apply all"), tr("Colours only"), tr("Opacities only")});
     elideInTheMiddle(*m_list);
     m_list->setViewMode(QListView::IconMode);

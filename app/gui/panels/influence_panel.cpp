@@ -55,7 +55,7 @@ private:
     SessionStore& m_store;
     Results& m_results;
     QComboBox* m_what = named(new QComboBox(this), "influenceCombo");
-    QTableWidget* m_table = named(new QTableWidget(this), "influenceTable");
+    QTableWidget* m_table = named(new QTableWidget(this), "influenceTable", tr("A row and a column for each feature"));
     QAction* m_copyAction = new QAction(tr("Copy the table"), m_table);
     bool m_fitsLater = false;
 };
@@ -70,6 +70,8 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
             tr("How much of each feature (rows) another one hides (columns): the part of the row's visibility that "
                "comes back where the column's opacity is 0,\n"
                "from this view and at the present opacities"));
+    m_what->setAccessibleName(tr("What the table tells"));
+    m_table->setAccessibleName(tr("Influence of features on each other"));
     m_what->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     m_what->setMinimumContentsLength(20);
     const auto tell = [this] { m_what->setToolTip(m_what->currentData(Qt::ToolTipRole).toString()); };

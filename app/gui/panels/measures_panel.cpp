@@ -52,7 +52,7 @@ private:
 
     Services& m_services;
     RulerController& m_rulers;
-    QTreeWidget* m_list = named(new QTreeWidget(this), "measureList");
+    QTreeWidget* m_list = named(new QTreeWidget(this), "measureList", tr("Measures of the picture and the slices"));
     QLabel* m_hint = wrappedLabel("measureHint", this);
     QToolButton* m_remove =
         named(toolButton(tr("Remove"), this), "removeMeasure", tr("Remove the selected measure (Delete)"));
@@ -62,6 +62,7 @@ private:
 MeasuresPanel::MeasuresPanel(Services& services, RulerController& rulers, QWidget* parent)
     : QWidget(parent), m_services(services), m_rulers(rulers) {
     setObjectName("measuresPanel");
+    m_list->setAccessibleName(tr("Measures"));
     m_hint->setTextFormat(Qt::PlainText);
     makeFaint(*m_hint);
     m_export->defaultAction()->setIconText(tr("Export…")); // what the button says

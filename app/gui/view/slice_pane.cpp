@@ -81,7 +81,7 @@ SlicePane::SlicePane(Services& services, const FieldController& fields, RulerCon
     setCursor(Qt::CrossCursor);
     m_maximize->setObjectName(objectName() + "Maximize");
     m_maximize->setAutoRaise(true);
-    m_maximize->setFocusPolicy(Qt::NoFocus);
+    m_maximize->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to the slice
     m_maximize->setCursor(Qt::ArrowCursor);
     m_maximize->setFixedSize(20, 20);
     setMaximized(false);

@@ -21,7 +21,7 @@ QToolButton* dockButton(QStyle::StandardPixmap sign, const QString& id, const QS
     button->setIconSize({kButton, kButton});
     button->setFixedSize(kButton, kButton);
     button->setAutoRaise(true);
-    button->setFocusPolicy(Qt::NoFocus);
+    button->setFocusPolicy(Qt::TabFocus); // a click leaves the keys where they are
     button->setAccessibleName(tip);
     return button;
 }

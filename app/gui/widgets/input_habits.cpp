@@ -1,13 +1,18 @@
 #include "widgets/input_habits.h"
 
+#include <algorithm>
+
 #include <QAbstractButton>
 #include <QAbstractItemView>
+#include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
 #include <QComboBox>
 #include <QCursor>
 #include <QKeyEvent>
+#include <QLabel>
 #include <QLineEdit>
+#include <QRegularExpression>
 #include <QTimer>
 
 namespace pellucid::gui {
@@ -34,6 +39,37 @@ void keepInside(QWidget& tip) {
     place.setX(std::max(room.left(), std::min(place.x(), room.right() - tip.width())));
     place.setY(std::max(room.top(), std::min(place.y(), room.bottom() - tip.height())));
     if (place != tip.pos()) tip.move(place);
+}
+
+constexpr auto kNamedByTip = "namedByTip";
+
+/// What shows a value without saying what it is of.
+bool needsName(const QWidget& widget) {
+    if (const auto* button = qobject_cast<const QAbstractButton*>(&widget)) return button->text().isEmpty();
+    const QWidget* parent = widget.parentWidget();
+    if (qobject_cast<const QLineEdit*>(&widget) != nullptr)
+        return qobject_cast<const QAbstractSpinBox*>(parent) == nullptr &&
+               qobject_cast<const QComboBox*>(parent) == nullptr;
+    return qobject_cast<const QAbstractSpinBox*>(&widget) != nullptr ||
+           qobject_cast<const QAbstractSlider*>(&widget) != nullptr ||
+           qobject_cast<const QComboBox*>(&widget) != nullptr ||
+           qobject_cast<const QAbstractItemView*>(&widget) != nullptr;
+}
+
+bool hasLabel(const QWidget& widget) {
+    if (widget.parentWidget() == nullptr) return false;
+    const auto labels = widget.parentWidget()->findChildren<QLabel*>(QString(), Qt::FindDirectChildrenOnly);
+    return std::ranges::any_of(labels, [&](const QLabel* label) { return label->buddy() == &widget; });
+}
+
+/// What nothing names is called by the first words of its tip, for those who hear it.
+void nameByTip(QWidget& widget) {
+    const bool isNamed = !widget.accessibleName().isEmpty() && !widget.property(kNamedByTip).toBool();
+    if (isNamed || !needsName(widget)) return;
+    static const QRegularExpression kEnd("[.,:;\n(]");
+    const QString name = hasLabel(widget) ? QString() : widget.toolTip().section(kEnd, 0, 0).trimmed();
+    widget.setProperty(kNamedByTip, true);
+    widget.setAccessibleName(name);
 }
 
 } // namespace
@@ -66,7 +102,12 @@ bool InputHabits::eventFilter(QObject* watched, QEvent* event) {
                     if (auto* line = box->findChild<QLineEdit*>()) line->setModified(false);
                 });
         break;
+    case QEvent::ToolTipChange:
+        if (watched->isWidgetType()) nameByTip(*static_cast<QWidget*>(watched));
+        break;
     case QEvent::Show:
+        if (watched->isWidgetType()) nameByTip(*static_cast<QWidget*>(watched));
+        [[fallthrough]];
     case QEvent::Resize:
         if (watched->inherits("QTipLabel"))
             QTimer::singleShot(0, watched, [tip = static_cast<QWidget*>(watched)] { keepInside(*tip); });

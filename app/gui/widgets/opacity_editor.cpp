@@ -31,6 +31,7 @@ OpacityEditor::OpacityEditor(QWidget* parent)
     m_spin->setButtonSymbols(QAbstractSpinBox::NoButtons);
     m_spin->setFixedWidth(QFontMetrics(font()).horizontalAdvance("0.0000") + 14);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_slider, m_spin}) {
+        widget->setAccessibleName(tr("Opacity"));
         widget->setToolTip(tr("Highest opacity of the feature: opacity of a path one voxel long (d0).\n"
                               "The slider is finer near zero."));
         // The wheel scrolls the table; it must not change an opacity in passing.

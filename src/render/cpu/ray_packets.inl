@@ -180,7 +180,8 @@ private:
         const Vec8 way = next.entry - last.entry;
         const Int8 resting = positive(way) < 0.01f; // as good as in one place
         const Vec8 mean = most(Vec8{}, resting ? next.opacity : p.met / way);
-        p.depth = mean * (next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
+        // A ray that has ended within a halved step is clamped to where it ended, before the last sample.
+        p.depth = mean * most(Vec8{}, next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
         if constexpr (kInvalid) p.depth *= 0.5f * (last.share + next.share);
         if (m_s.faintCount > 0) p.depth *= thinned(m_s, m_rays, last.u, next.u);
         // Where it is lit, and where colours of voxels are taken.

@@ -36,6 +36,7 @@ using nlohmann::json;
 /// Without a word for so long it is ended: it tells of every file that it has read.
 constexpr double kMostSilentSeconds = 120;
 constexpr std::size_t kMostLine = 64u << 20;
+constexpr const char* kCopyAgain = "the file is damaged, or not what it says it is: copy it again";
 /// Voxels that are read only where somebody has said so: a short header can claim any number.
 constexpr std::size_t kMostUnasked = std::size_t{1} << 37;
 /// Voxels that files with coarser copies are opened with where nobody has said how many.
@@ -237,13 +238,14 @@ private:
     }
 
     [[noreturn]] void failSuddenly(const std::string& why) const {
-        throw FileError("the program that reads this format was ended: " + why, m_path,
-                        "the file is damaged, or not what it says it is: copy it again");
+        throw FileError("the program that reads this format was ended: " + why, m_path, kCopyAgain);
     }
     [[noreturn]] void failAtItsEnd() {
         const int status = waitForEnd(); // it has closed its end, and is about to be gone
         if (WIFEXITED(status) && WEXITSTATUS(status) == 127) failToStart(m_program, "a library is missing");
-        if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) failSuddenly("the file takes too long to read");
+        if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+            throw TakesTooLong("the program that reads this format was ended: the file takes too long to read", m_path,
+                               kCopyAgain);
         throw FileError("the program that reads this format crashed on it" +
                             (WIFSIGNALED(status) ? " (signal " + std::to_string(WTERMSIG(status)) + ")"
                                                  : " (status " + std::to_string(WEXITSTATUS(status)) + ")"),

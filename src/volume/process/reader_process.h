@@ -6,10 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/job.h"
 #include "volume/process/reader_messages.h"
 
 namespace pellucid {
+
+/// The reader was ended since the file takes it too long: so it would the next time.
+class TakesTooLong : public FileError {
+public:
+    using FileError::FileError;
+};
 
 /// All throw FileError or UsageError as the reader says it, or FileError where it crashes, falls silent or cannot be
 /// started; Cancelled, and the process has been ended then.
