@@ -18,19 +18,24 @@ struct FigureParts {
 struct FigurePartInfo {
     const char* name;  ///< as settings call it
     const char* words; ///< as controls do
+    const char* help;  ///< a sentence
     bool FigureParts::*shown;
 };
-inline constexpr std::array<FigurePartInfo, 11> kFigureParts{{{"title", "Title", &FigureParts::title},
-                                                              {"scale", "Scale bar", &FigureParts::scale},
-                                                              {"letters", "Anatomical letters", &FigureParts::letters},
-                                                              {"cube", "Orientation cube", &FigureParts::cube},
-                                                              {"axes", "Axes", &FigureParts::axes},
-                                                              {"measures", "Measures", &FigureParts::measures},
-                                                              {"legend", "Legend of features", &FigureParts::legend},
-                                                              {"shares", "Bars of shares", &FigureParts::shares},
-                                                              {"targets", "Targets of shares", &FigureParts::targets},
-                                                              {"colors", "Colour scale", &FigureParts::colors},
-                                                              {"caption", "Caption", &FigureParts::caption}}};
+inline constexpr std::array<FigurePartInfo, 11> kFigureParts{
+    {{"title", "Title", "A line above the picture, set in bold", &FigureParts::title},
+     {"scale", "Scale bar", "A line in the picture as long on paper as it says", &FigureParts::scale},
+     {"letters", "Anatomical letters", "L R A P S I at the edges of the picture, for data of a patient",
+      &FigureParts::letters},
+     {"cube", "Orientation cube", "A small cube that shows from which side the volume is seen", &FigureParts::cube},
+     {"axes", "Axes", "The axes of the world at a corner of the volume", &FigureParts::axes},
+     {"measures", "Measures", "Distances, angles, spheres and boxes that the session has", &FigureParts::measures},
+     {"legend", "Legend of features", "Colour, name, highest opacity and share of each feature that is drawn",
+      &FigureParts::legend},
+     {"shares", "Bars of shares", "How much of the saliency and of what is visible each feature has, as bars",
+      &FigureParts::shares},
+     {"targets", "Targets of shares", "Upright lines at the wanted shares; they need the bars", &FigureParts::targets},
+     {"colors", "Colour scale", "Colours and opacities over the values", &FigureParts::colors},
+     {"caption", "Caption", "What the picture shows, in measured words", &FigureParts::caption}}};
 /// "scale,legend"; "picture" may be among them, and stands for nothing more. Throws UsageError without a place.
 FigureParts figurePartsOf(const std::string& text);
 /// Names with commas between, in the order of kFigureParts; "picture" where there are none.

@@ -14,8 +14,8 @@
 #include "report/page_parts.h"
 #include "report/report.h"
 #include "run_support.h"
-#include "session/session_json.h"
 #include "session/caption.h"
+#include "session/session_json.h"
 #include "support/temp_folder.h"
 #include "tf/shown_tf.h"
 

@@ -16,7 +16,7 @@ namespace pellucid::cli {
 struct TfOptions {
     std::optional<std::string> spec; ///< a file, auto, tents:N[:PEAK], ramp:N or preset:NAME
 
-    std::optional<TfParts> parts;    ///< what is taken of `spec`; empty: all
+    std::optional<TfParts> parts; ///< what is taken of `spec`; empty: all
 
     const ColorMap* colorMap = nullptr;
     ColorMapOptions colorMapOptions;

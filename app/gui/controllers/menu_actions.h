@@ -12,7 +12,7 @@ class Services;
 void addAnnotationActions(Services& services); ///< switches of the annotations
 void addSliceActions(Services& services);      ///< layouts, the crosshair, the window of grey
 void addThemeActions(Services& services);      ///< a dark or a light window
-void addVisionActions(Services& services); ///< the window as other viewers see it
+void addVisionActions(Services& services);     ///< the window as other viewers see it
 void addViewActions(Services& services);       ///< standard views, projection, the camera's history
 /// Whether the handles of what is cut away are shown.
 QAction& addClipHandlesAction(Services& services);

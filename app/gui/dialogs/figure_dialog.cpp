@@ -66,9 +66,8 @@ FigureDialog::FigureDialog(const FigureOptions& offered, QWidget* parent)
     m_width->setValue(m_offered.widthMm);
     m_height->setValue(m_aspect * m_offered.widthMm);
 
-    auto* const browseButton = new QPushButton(tr("Browse…"), this);
-    browseButton->setAutoDefault(false);
-    connect(browseButton, &QPushButton::clicked, this, &FigureDialog::browse);
+    auto* const browse = browseButton(*this);
+    connect(browse, &QPushButton::clicked, this, &FigureDialog::browse);
     auto* const form = new QFormLayout;
     form->setVerticalSpacing(9);
     form->addRow(tr("For"), m_preset);
@@ -78,7 +77,7 @@ FigureDialog::FigureDialog(const FigureOptions& offered, QWidget* parent)
     form->addRow(wordsOf("font_pt"), m_font);
     form->addRow(tr("Parts"), makeParts());
     form->addRow(wordsOf("title"), m_title);
-    addRow(*form, tr("&File"), m_path, rowOf({{m_path, 1}, browseButton}));
+    addRow(*form, tr("&File"), m_path, rowOf({{m_path, 1}, browse}));
 
     m_preview->setFixedSize(kPreviewWidth, kPreviewHeight);
     m_preview->setAlignment(Qt::AlignCenter);
@@ -113,7 +112,8 @@ QWidget* FigureDialog::makeParts() {
     auto* const grid = inset(new QGridLayout(parts), {0, 0, 0, 0});
     const FigureParts shown = figurePartsOf(m_offered.parts);
     for (const FigurePartInfo& part : kFigureParts) {
-        auto* const box = named(new QCheckBox(tr(part.words), parts), QStringLiteral("figurePart_%1").arg(part.name));
+        auto* const box =
+            named(new QCheckBox(tr(part.words), parts), QStringLiteral("figurePart_%1").arg(part.name), tr(part.help));
         box->setChecked(shown.*part.shown);
         connect(box, &QCheckBox::toggled, this, &FigureDialog::changed);
         const int n = static_cast<int>(m_parts.size());

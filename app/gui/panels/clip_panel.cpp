@@ -155,7 +155,8 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
     for (int column = 1; column < 4; ++column) grid->setColumnStretch(column, 1);
     auto* flip = named(toolButton(tr("Flip"), row.widget), QStringLiteral("flipPlane%1").arg(index + 1),
                        tr("Keep the other side of the plane"));
-    auto* remove = named(toolButton(tr("Remove"), row.widget), QStringLiteral("removePlane%1").arg(index + 1));
+    auto* remove = named(toolButton(tr("Remove"), row.widget), QStringLiteral("removePlane%1").arg(index + 1),
+                         tr("Take this clip plane away"));
     grid->addWidget(flip, 1, 2);
     grid->addWidget(remove, 1, 3);
     connect(flip, &QToolButton::clicked, this, [this, index] {

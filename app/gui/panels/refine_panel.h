@@ -92,7 +92,8 @@ private:
     QLabel* m_note = withAnyWidth(wrappedLabel("refineNote", this));
     QLabel* m_figures = withAnyWidth(wrappedLabel("refineFigures", this));
     QLabel* m_comparison = withAnyWidth(wrappedLabel("refineComparison", this));
-    QPushButton* m_help = named(new QPushButton(this), "refineHelpButton"); ///< keeps the picture from getting dark
+    QPushButton* m_help = named(new QPushButton(this), "refineHelpButton",
+                                tr("Another way to refine, which keeps the picture from getting dark"));
     EdgeBars* m_edges = named(new EdgeBars(this), "refineEdges");
     PlotView* m_plot = named(new PlotView(this), "refineCurve",
                              tr("Energy, the variance of the edge weights, over the steps; logarithmic"));

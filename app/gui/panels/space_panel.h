@@ -92,7 +92,8 @@ private:
               tr("The distance from the targets (F; 0 is on target), or the attention on a feature (VWS, 0 to 1)"));
     QPushButton* m_compute = named(new QPushButton(tr("&Compute"), this), "spaceCompute",
                                    tr("Samples attention (VWS) and distance from the targets (F), from this camera"));
-    QPushButton* m_cancel = named(new QPushButton(tr("Cancel"), this), "spaceCancel");
+    QPushButton* m_cancel =
+        named(new QPushButton(tr("Cancel"), this), "spaceCancel", tr("Stop measuring; what has been measured stays"));
     QPushButton* m_least = named(new QPushButton(tr("&Go to the nearest"), this), "spaceLeast",
                                  tr("Sets the opacities of the sample that is nearest to the targets (least F)"));
     QToolButton* m_save =

@@ -66,6 +66,9 @@ TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
                   tr("Share of attention from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"))) {
     setObjectName("targetBars");
     setAccessibleName(tr("Attention on the features and their targets"));
+    setWhatsThis(
+        tr("How much of the attention each feature gets, and the target. Up and Down choose the feature, Left and "
+           "Right change its target by 0.01."));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Minimum);

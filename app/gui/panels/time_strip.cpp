@@ -22,6 +22,9 @@ constexpr double kMargin = 6, kMarks = 13, kHeld = 3; // pixels: at the sides, t
 TimeStrip::TimeStrip(QWidget* parent) : QWidget(parent) {
     setObjectName("timeStrip");
     setAccessibleName(tr("Time histogram"));
+    setWhatsThis(
+        tr("The histograms of all frames, with their keys. A click or a drag goes to a frame, and so do the arrow "
+           "keys."));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);

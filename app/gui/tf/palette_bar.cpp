@@ -23,6 +23,9 @@ PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas&
     : QWidget(&canvas), m_services(services), m_refining(refining), m_canvas(canvas) {
     setObjectName("paletteBar");
     setAccessibleName(tr("Palette"));
+    setWhatsThis(
+        tr("The colours of the values. A click refines the transfer function for the value clicked; arrow keys "
+           "move the marker."));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setCursor(Qt::PointingHandCursor);

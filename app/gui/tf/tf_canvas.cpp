@@ -36,6 +36,8 @@ TfCanvas::TfCanvas(SessionStore& store, Results& results, Selection& selection, 
     : QWidget(parent), m_store(store), m_results(results), m_selection(selection) {
     setObjectName("tfCanvas");
     setAccessibleName(tr("Transfer function"));
+    setWhatsThis(tr("The curve of opacity over the values, in its colours, with the histogram behind it. Drag points, "
+                    "double-click for a new one; arrow keys move the selected one."));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setProperty(kKeepsSpace, true);

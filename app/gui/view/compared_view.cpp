@@ -64,6 +64,7 @@ ComparedView::ComparedView(ComparisonController& comparing, VolumeView& viewOfA,
       m_overlay(new Overlay(comparing, this)) {
     setObjectName("comparedView");
     setAccessibleName(tr("What is compared with"));
+    setWhatsThis(tr("The picture of state B, from the same view or its own."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     hide();

@@ -75,6 +75,9 @@ SlicePane::SlicePane(Services& services, const FieldController& fields, RulerCon
     const QLatin1Char axisLetter("XYZ"[worldAxis]);
     setObjectName(QStringLiteral("slice%1").arg(axisLetter));
     setAccessibleName(tr("Slice across %1").arg(axisLetter));
+    setWhatsThis(
+        tr("A slice of the data. A drag moves the crosshair, the arrow keys go from slice to slice; a right drag "
+           "sets the grey levels."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setContextMenuPolicy(Qt::PreventContextMenu);

@@ -65,6 +65,9 @@ VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* pare
               }) {
     setObjectName("volumeView");
     setAccessibleName(tr("Volume"));
+    setWhatsThis(
+        tr("The picture of the volume. A drag or the arrow keys turn it, + and − zoom; a click asks what is seen "
+           "there. F1 lists all keys."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     auto* layout = new QVBoxLayout(this);

@@ -106,6 +106,8 @@ bool InputHabits::eventFilter(QObject* watched, QEvent* event) {
         if (watched->isWidgetType()) nameByTip(*static_cast<QWidget*>(watched));
         break;
     case QEvent::Show:
+        // Tab goes on to the next control; arrow keys go from cell to cell.
+        if (auto* cells = qobject_cast<QAbstractItemView*>(watched)) cells->setTabKeyNavigation(false);
         if (watched->isWidgetType()) nameByTip(*static_cast<QWidget*>(watched));
         [[fallthrough]];
     case QEvent::Resize:

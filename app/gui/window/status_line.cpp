@@ -37,7 +37,8 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
       m_renderer(named(new QLabel(&bar), "rendererLabel")), m_engine(named(new QLabel(&bar), "engineLabel")),
       m_background(named(new QLabel(&bar), "backgroundLabel")), m_hint(named(new QLabel(&bar), "hintLabel")),
       m_memory(named(new QLabel(&bar), "memoryLabel")), m_progress(progressBar("backgroundProgress", &bar)),
-      m_cancel(named(toolButton(tr("Cancel"), &bar), "backgroundCancel")) {
+      m_cancel(
+          named(toolButton(tr("Cancel"), &bar), "backgroundCancel", tr("Stop what is under way in the background"))) {
     m_progress->setMaximumSize(160, 14);
     m_cancel->setMaximumHeight(bar.fontMetrics().height()); // no higher than the texts
     bar.setSizeGripEnabled(false);

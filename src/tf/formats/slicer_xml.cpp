@@ -80,8 +80,9 @@ WrittenTf writePresets(const TfToWrite& tf) {
 } // namespace
 
 TfFormat slicerXmlFormat() {
-    return {"slicer-xml",  "3D Slicer presets", ".xml",       false, "features, unit distance (opacities are for 1 mm)",
-            &knowsPresets, &readPresets,        &writePresets, true};
+    return {
+        "slicer-xml",  "3D Slicer presets", ".xml",        false, "features, unit distance (opacities are for 1 mm)",
+        &knowsPresets, &readPresets,        &writePresets, true};
 }
 
 } // namespace pellucid

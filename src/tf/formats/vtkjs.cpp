@@ -29,7 +29,7 @@ WrittenTf writeVtkJs(const TfToWrite& tf) {
 
 TfFormat vtkJsFormat() {
     return {"vtkjs",    "vtk.js preset", ".vtkjs.json", true, "opacities, features", &knowsNothingOfItsOwn,
-            &readVtkJs, &writeVtkJs, true};
+            &readVtkJs, &writeVtkJs,     true};
 }
 
 } // namespace pellucid
