@@ -263,7 +263,16 @@ std::string pictureFileOf(const std::string& path, int picture) {
 }
 
 std::string picturesFolderOf(const std::string& path) {
-    return filmFileOf(path) == FilmFile::Pictures ? path : path + ".pictures";
+    if (filmFileOf(path) == FilmFile::Pictures) return path;
+    // A name that is as long as can be has no room for more: its end stands for it.
+    constexpr const char* kSuffix = ".pictures";
+    constexpr std::size_t kMost = 255 - 9; // bytes of a file's name
+    const fs::path file(path);
+    std::string name = file.filename().string();
+    if (name.size() > kMost) name.erase(0, name.size() - kMost);
+    while (!name.empty() && (static_cast<unsigned char>(name.front()) & 0xc0) == 0x80)
+        name.erase(0, 1); // whole letters
+    return (file.parent_path() / (name + kSuffix)).string();
 }
 
 std::optional<UnfinishedFilm> unfinishedFilm(const FilmTask& task) {

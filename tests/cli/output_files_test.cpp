@@ -180,7 +180,7 @@ TEST_CASE("every option that names an output refuses the volume", "[cli][output-
             if (read.contains(option)) continue;
             ++found;
             int refused = 0;
-            for (const std::string suffix : {".png", ".csv", ".json", ".nrrd", ".mp4"}) {
+            for (const std::string suffix : {".png", ".csv", ".json", ".nrrd", ".mp4", ".exr"}) {
                 const std::string name = "volume" + suffix;
                 w.write(name, std::string(512, '\1'));
                 Words line{command, name, "--raw", "8,8,8,u8"};
@@ -195,5 +195,5 @@ TEST_CASE("every option that names an output refuses the volume", "[cli][output-
             CHECK(refused > 0); // where the suffix suits
         }
     }
-    CHECK(found == 11); // render 1, refine 1, propose 1, optimize 3, space 3, views 2; sequence has a folder
+    CHECK(found == 12); // render 2, refine 1, propose 1, optimize 3, space 3, views 2; sequence has a folder
 }

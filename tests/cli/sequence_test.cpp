@@ -333,16 +333,16 @@ TEST_CASE("a film is made where ffmpeg is installed", "[cli][sequence]") {
         CHECK(r.err.find("ffmpeg is not installed") != std::string::npos);
         CHECK_FALSE(w.has("o")); // told before any work
     }
-    // In its place a program whose film is the list of pictures that it was given.
+    // In its place a program whose film is the list of pictures that it was given, and their rate.
     std::filesystem::create_directory(w.path("bin"));
-    w.write("bin/ffmpeg", "#!/bin/sh\nwhile [ $# -gt 1 ]; do [ \"$1\" = -i ] && list=$2; shift; done\n"
-                          "cp \"$list\" \"$1\"\n");
+    w.write("bin/ffmpeg", "#!/bin/sh\nwhile [ $# -gt 1 ]; do [ \"$1\" = -framerate ] && rate=$2; shift; done\n"
+                          "{ for f in *.png; do readlink $f; done; echo rate $rate; } > \"$1\"\n");
     std::filesystem::permissions(w.path("bin/ffmpeg"), std::filesystem::perms::owner_all);
     const PathOf with(w.path("bin").string() + ":/usr/bin:/bin");
     REQUIRE(w.run(film).status == 0);
     const std::string list = w.read("film.mp4");
     CHECK(list.find("frame_0000.png") < list.find("frame_0004.png"));
-    CHECK(list.find("duration 0.2") != std::string::npos);
+    CHECK(list.find("rate 5") != std::string::npos);
     CHECK_FALSE(w.has("film.mp4.list"));
     w.write("bin/ffmpeg", "#!/bin/sh\necho no such codec >&2\nexit 3\n");
     const Outcome failed = w.run(film);

@@ -260,7 +260,7 @@ TEST_CASE("without a view what is drawn fills the picture, as the window opens",
     const Workshop w;
     const auto rendered = [&](const std::string& file, std::vector<std::string> options) {
         options.insert(options.begin(), {"render", "sample:shells", "--sample-size", "16", "--size", "48x48",
-                                         "--engine", "cpu", "--out", file});
+                                         "--engine", "cpu", "--no-metadata", "--out", file});
         w.json(options);
         return w.read(file);
     };

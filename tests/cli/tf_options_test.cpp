@@ -33,7 +33,8 @@ TEST_CASE("hidden features are not measured, and named ones alone are", "[cli][t
 
 TEST_CASE("pictures show what is not hidden", "[cli][tf]") {
     const Workshop w;
-    const Words render{"render", "sample:shells", "--sample-size", "16", "--tf", "tents:3:0.1", "--size", "40x40"};
+    const Words render{"render",      "sample:shells", "--sample-size", "16",           "--tf",
+                       "tents:3:0.1", "--size",        "40x40",         "--no-metadata"};
     REQUIRE(w.run(render + Words{"--out", "all.png"}).status == 0);
     REQUIRE(w.run(render + Words{"--hide", "f1", "--out", "without.png"}).status == 0);
     REQUIRE(w.run(render + Words{"--only", "f2", "--only", "f3", "--out", "others.png"}).status == 0);

@@ -138,14 +138,18 @@ private:
     int m_count = 0;
 };
 
-/// The controls that Tab comes to from the first one on, once around the window.
+/// The controls that Tab, or Shift and Tab, come to from the first one on. (In the picture Tab is a command.)
 std::set<QWidget*> reachedByTab(QWidget& first) {
     std::set<QWidget*> reached;
-    first.setFocus(Qt::TabFocusReason);
-    for (int i = 0; i < 600; ++i) {
-        QWidget* const now = QApplication::focusWidget();
-        if (now == nullptr || !reached.insert(now).second) break;
-        QTest::keyClick(now, Qt::Key_Tab);
+    for (const Qt::Key key : {Qt::Key_Tab, Qt::Key_Backtab}) {
+        first.setFocus(Qt::TabFocusReason);
+        std::set<QWidget*> way;
+        for (int i = 0; i < 600; ++i) {
+            QWidget* const now = QApplication::focusWidget();
+            if (now == nullptr || now->objectName() == "volumeView" || !way.insert(now).second) break;
+            QTest::keyClick(now, key);
+        }
+        reached.merge(way);
     }
     return reached;
 }

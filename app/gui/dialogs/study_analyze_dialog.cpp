@@ -21,7 +21,7 @@ StudyAnalyzeDialog::StudyAnalyzeDialog(const QString& folder, QWidget* parent)
     : QDialog(parent),
       m_folder(named(new QLineEdit(folder, this), "studyFolder", tr("The folder that a study was prepared into"))),
       m_participants(named(new QListWidget(this), "studyParticipants",
-                           tr("Participants who are not checked are left out of the analysis"))),
+                           tr("Participants: those who are not checked are left out of the analysis"))),
       m_rules(named(new QCheckBox(tr("&Leave out deficient colour vision and inconsistent answers"), this),
                     "studyRules",
                     tr("Leaves out those who report a colour vision deficiency, and those whose scores of\n"

@@ -227,7 +227,7 @@ void MainWindow::addHelpActions() {
                          {volume, tr("Esc"), tr("give up a drag")}});
     ActionMenu edit(actions, tr("&Edit"));
     edit.separate();
-    edit.add("preferencesAction", tr("Pre&ferences…"), "Ctrl+,",
+    edit.add("preferencesAction", tr("Pre&ferences…"), "Ctrl+Alt+,",
              tr("Theme, mouse, memory, threads and recent files of this machine"), [this] { showPreferences(); });
     actions.add(tr("&Help"), "keysAction", tr("&Mouse and keys"), "F1", {},
                 [this] { showKeys(m_services->actions(), this); });
