@@ -369,5 +369,5 @@ TEST_CASE("Edit, Preferences opens them, and the status line tells the memory", 
     });
     w.child<QAction>("preferencesAction").trigger();
     CHECK(looked);
-    CHECK(w.child<QAction>("preferencesAction").shortcut() == QKeySequence("Ctrl+,"));
+    CHECK(w.child<QAction>("preferencesAction").shortcut() == QKeySequence("Ctrl+Alt+,"));
 }
