@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "base/utf8.h"
 #include "commands.h"
 #include "optimize/fields.h"
 #include "output_files.h"
@@ -48,11 +49,7 @@ std::string safeName(const std::string& name) {
             static_cast<unsigned char>(c) <= ' ' || std::string(R"(/\:*?"<>|)").find(c) != std::string::npos;
         safe += harmful ? '_' : c;
     }
-    if (safe.size() > kMost) {
-        safe.resize(kMost);
-        while (!safe.empty() && (static_cast<unsigned char>(safe.back()) & 0xc0) == 0x80)
-            safe.pop_back(); // whole letters
-    }
+    safe = cutAtCharacter(std::move(safe), kMost);
     return safe.empty() ? "_" : safe;
 }
 

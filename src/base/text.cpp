@@ -8,6 +8,8 @@
 #include <span>
 #include <type_traits>
 
+#include "base/utf8.h"
+
 namespace pellucid {
 
 std::string describeBytes(std::uint64_t bytes) {
@@ -23,30 +25,6 @@ std::string describeBytes(std::uint64_t bytes) {
 
 namespace {
 
-/// The character that a text begins with.
-struct Character {
-    std::size_t bytes = 1;
-    std::uint32_t code = 0;
-    bool isValid = false; ///< else a byte that is no UTF-8
-};
-
-Character firstOf(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const std::uint32_t head = byte(0);
-    if (head < 0x80) return {1, head, true};
-    const std::size_t bytes = head >= 0xf0 ? 4 : head >= 0xe0 ? 3 : 2;
-    if (head < 0xc2 || head > 0xf4 || text.size() < bytes) return {};
-    std::uint32_t code = head & (0x7fu >> bytes);
-    for (std::size_t i = 1; i < bytes; ++i) {
-        if ((byte(i) & 0xc0) != 0x80) return {};
-        code = code << 6 | (byte(i) & 0x3fu);
-    }
-    constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000}; // shorter forms say the same
-    const bool isSurrogate = code >= 0xd800 && code < 0xe000;
-    if (code < kLeast[bytes] || code > 0x10ffff || isSurrogate) return {};
-    return {bytes, code, true};
-}
-
 /// Of the C0 and C1 sets, or ends a line.
 bool isControl(std::uint32_t code) {
     return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x2028 || code == 0x2029;
@@ -61,7 +39,7 @@ bool turnsDirection(std::uint32_t code) {
 template <class Keep, class Change>
 void forEachCharacter(std::string_view text, const Keep& keep, const Change& change) {
     while (!text.empty()) {
-        const Character c = firstOf(text);
+        const Character c = firstCharacter(text);
         if (c.isValid && !isControl(c.code) && !turnsDirection(c.code))
             keep(text.substr(0, c.bytes));
         else

@@ -5,6 +5,7 @@
 
 #include "base/base64.h"
 #include "base/round_numbers.h"
+#include "base/xml_text.h"
 #include "figure/print.h"
 #include "image_io/image_file.h"
 
@@ -22,30 +23,6 @@ std::string number(double value) {
 
 std::string attribute(const char* name, const std::string& value) {
     return " " + std::string(name) + "=\"" + value + "\"";
-}
-
-/// Of printable() texts, which have no control characters.
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            safe += "&amp;";
-            break;
-        case '<':
-            safe += "&lt;";
-            break;
-        case '>':
-            safe += "&gt;";
-            break;
-        case '"':
-            safe += "&quot;";
-            break;
-        default:
-            safe += c;
-        }
-    }
-    return safe;
 }
 
 std::string painted(const char* what, const Rgb& color, double alpha) {
@@ -72,8 +49,8 @@ public:
                "xmlns:xlink=\"http://www.w3.org/1999/xlink\"" +
                attribute("width", width + "mm") + attribute("height", height + "mm") +
                attribute("viewBox", "0 0 " + width + " " + height) +
-               " role=\"img\" aria-labelledby=\"title desc\">\n<title id=\"title\">" + escaped(m_figure.title) +
-               "</title>\n<desc id=\"desc\">" + escaped(m_figure.description) + "</desc>\n" +
+               " role=\"img\" aria-labelledby=\"title desc\">\n<title id=\"title\">" + escapedXml(m_figure.title) +
+               "</title>\n<desc id=\"desc\">" + escapedXml(m_figure.description) + "</desc>\n" +
                (m_definitions.empty() ? "" : "<defs>\n" + m_definitions + "</defs>\n") + body + "</svg>\n";
     }
 
@@ -101,7 +78,7 @@ public:
 
     void operator()(const FigureText& text) {
         const std::string d = attribute("d", outlineOf(text, m_figure.font));
-        m_elements += "<g role=\"img\"" + attribute("aria-label", escaped(text.text)) + ">";
+        m_elements += "<g role=\"img\"" + attribute("aria-label", escapedXml(text.text)) + ">";
         if (text.halo > 0)
             m_elements += "<path" + d + " fill=\"none\"" + painted("stroke", text.haloColor, kHaloAlpha * text.alpha) +
                           attribute("stroke-width", number(2 * text.halo)) + kRound + "/>";
@@ -115,7 +92,7 @@ private:
         m_elements.clear();
         for (const FigureElement& element : group.elements) std::visit(*this, element);
         std::string open = "<g" + attribute("id", group.name);
-        if (!group.label.empty()) open += attribute("aria-label", escaped(group.label));
+        if (!group.label.empty()) open += attribute("aria-label", escapedXml(group.label));
         if (group.clip) open += attribute("clip-path", "url(#" + clip(*group.clip) + ")");
         return open + ">\n" + m_elements + "</g>\n";
     }

@@ -1,8 +1,5 @@
 #include "film/film_progress.h"
 
-#include <array>
-#include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -10,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/digest.h"
 #include "base/error.h"
 #include "base/json_file.h"
 #include "base/json_value.h"
@@ -27,25 +25,8 @@ namespace {
 constexpr const char* kFormat = "pellucid-film-progress";
 constexpr int kVersion = 1;
 
-/// FNV-1a of 64 bits.
-class Hash {
-public:
-    void add(const json& j) {
-        // Names of files need not be UTF-8.
-        for (const char c : j.dump(-1, ' ', false, json::error_handler_t::replace) + "\n") {
-            m_value ^= static_cast<unsigned char>(c);
-            m_value *= 0x100000001b3u;
-        }
-    }
-    std::string text() const {
-        std::array<char, 17> digits{};
-        std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(m_value));
-        return digits.data();
-    }
-
-private:
-    std::uint64_t m_value = 0xcbf29ce484222325u;
-};
+/// Names of files need not be UTF-8.
+void addTo(Digest& digest, const json& j) { digest.add(j.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
 /// What is decided of the pictures; what is kept beside it changes none.
 json picturePart(const Scene& scene) {
@@ -59,19 +40,19 @@ json picturePart(const Scene& scene) {
 } // namespace
 
 std::string filmDigest(const FilmTask& task) {
-    Hash hash;
-    hash.add({{"program", PELLUCID_VERSION},
-              {"size", {task.width, task.height}},
-              {"title", task.scene.volume->title},
-              {"tf", jsonFromTf(task.scene.tf)},
-              {"around", task.around.any() ? task.around.on : false}});
-    hash.add(picturePart(task.scene));
-    for (const AnnotationPartInfo& part : kAnnotationParts) hash.add(task.around.*part.shown);
-    hash.add(jsonFromKeyframes(task.keys));
+    Digest digest;
+    addTo(digest, {{"program", PELLUCID_VERSION},
+                   {"size", {task.width, task.height}},
+                   {"title", task.scene.volume->title},
+                   {"tf", jsonFromTf(task.scene.tf)},
+                   {"around", task.around.any() ? task.around.on : false}});
+    addTo(digest, picturePart(task.scene));
+    for (const AnnotationPartInfo& part : kAnnotationParts) addTo(digest, task.around.*part.shown);
+    addTo(digest, jsonFromKeyframes(task.keys));
     for (const FilmShot& shot : task.shots)
-        hash.add(shot.time ? json(*shot.time)
-                           : json{{"frame", shot.frame}, {"camera", jsonFromWholeCamera(shot.camera)}});
-    return hash.text();
+        addTo(digest,
+              shot.time ? json(*shot.time) : json{{"frame", shot.frame}, {"camera", jsonFromWholeCamera(shot.camera)}});
+    return digest.text();
 }
 
 std::optional<std::string> readFilmProgress(const std::string& folder) {

@@ -11,7 +11,7 @@ namespace pellucid {
 
 inline constexpr const char* kFilmProgressFile = "film.progress.json";
 
-/// Of all that the pictures depend on: program, data, what is decided in the session, size, way. 16 digits.
+/// Of all that the pictures depend on: program, data, what is decided in the session, size, way.
 std::string filmDigest(const FilmTask& task);
 
 /// That of the film which is drawn in a folder. Empty where the folder holds no such file or none that can be

@@ -9,34 +9,15 @@
 #include <optional>
 #include <string_view>
 
-#include <zlib.h>
-
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "image_io/png_chunks.h"
 
 namespace pellucid {
 
 namespace {
 
-using Bytes = std::vector<unsigned char>;
-using Span = std::span<const unsigned char>;
-
-constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::size_t kFrame = 12; ///< bytes of a piece around its data: length, name, checksum
-
-std::uint32_t numberAt(Span bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | bytes[at + i];
-    return value;
-}
-
-/// Its lowest bytes, the highest of them first.
-void addNumber(Bytes& bytes, std::uint32_t value, std::ptrdiff_t count = 4) {
-    const std::array<unsigned char, 4> all{static_cast<unsigned char>(value >> 24),
-                                           static_cast<unsigned char>(value >> 16),
-                                           static_cast<unsigned char>(value >> 8), static_cast<unsigned char>(value)};
-    bytes.insert(bytes.end(), all.end() - count, all.end());
-}
+using png::addNumber, png::Bytes, png::kFrame, png::numberIn, png::Span;
 
 /// A piece of a file, "IDAT" and its kind.
 struct Piece {
@@ -46,16 +27,17 @@ struct Piece {
 
 /// Empty where this is no PNG file or one that is damaged.
 std::optional<std::vector<Piece>> piecesOf(Span file) {
-    if (file.size() < kSignature.size() || !std::equal(kSignature.begin(), kSignature.end(), file.begin())) return {};
+    const Span signature = png::bytesOf(png::kSignature);
+    if (file.size() < signature.size() || !std::ranges::equal(signature, file.first(signature.size()))) return {};
     std::vector<Piece> pieces;
-    for (std::size_t at = kSignature.size(); at < file.size();) {
+    for (std::size_t at = signature.size(); at < file.size();) {
         if (file.size() - at < kFrame) return {};
-        const std::size_t length = numberAt(file, at);
+        const std::size_t length = numberIn(file.subspan(at));
         if (file.size() - at - kFrame < length) return {};
-        const Span named = file.subspan(at + 4, 4 + length);
-        if (crc32(0, named.data(), static_cast<uInt>(named.size())) != numberAt(file, at + 8 + length)) return {};
-        pieces.push_back(
-            {{reinterpret_cast<const char*>(named.data()), 4}, named.subspan(4), file.subspan(at, kFrame + length)});
+        const std::string_view name(reinterpret_cast<const char*>(&file[at + 4]), 4);
+        const Span data = file.subspan(at + 8, length);
+        if (png::checksumOf(name, data) != numberIn(file.subspan(at + 8 + length))) return {};
+        pieces.push_back({name, data, file.subspan(at, kFrame + length)});
         at += kFrame + length;
     }
     const bool isWhole = pieces.size() > 2 && pieces.front().name == "IHDR" && pieces.front().data.size() == 13 &&
@@ -70,17 +52,17 @@ Bytes bytesOf(const std::string& path) {
 
 class Writer {
 public:
-    explicit Writer(OutputFile& out) : m_out(out) { out.write(kSignature.data(), kSignature.size()); }
-    void add(const Piece& piece) { m_out.write(piece.whole.data(), piece.whole.size()); }
+    explicit Writer(OutputFile& out) : m_out(out) { write(png::bytesOf(png::kSignature)); }
+    void add(const Piece& piece) { write(piece.whole); }
     void add(std::string_view name, const Bytes& data) {
-        Bytes length, named(name.begin(), name.end()), sum;
-        addNumber(length, static_cast<std::uint32_t>(data.size()));
-        named.insert(named.end(), data.begin(), data.end());
-        addNumber(sum, static_cast<std::uint32_t>(crc32(0, named.data(), static_cast<uInt>(named.size()))));
-        for (const Bytes* part : {&length, &named, &sum}) m_out.write(part->data(), part->size());
+        Bytes chunk;
+        png::addChunk(chunk, name, data);
+        write(chunk);
     }
 
 private:
+    void write(Span bytes) { m_out.write(bytes.data(), bytes.size()); }
+
     OutputFile& m_out;
 };
 
@@ -118,8 +100,8 @@ Bytes controlOf(std::uint32_t sequence, Span size, const Delay& delay) {
 
 bool isWholePng(Span bytes, int width, int height) {
     const auto pieces = piecesOf(bytes);
-    return pieces && numberAt(pieces->front().data, 0) == static_cast<std::uint32_t>(width) &&
-           numberAt(pieces->front().data, 4) == static_cast<std::uint32_t>(height);
+    return pieces && numberIn(pieces->front().data) == static_cast<std::uint32_t>(width) &&
+           numberIn(pieces->front().data.subspan(4)) == static_cast<std::uint32_t>(height);
 }
 
 bool isWholePngFile(const std::string& path, int width, int height) { return isWholePng(bytesOf(path), width, height); }

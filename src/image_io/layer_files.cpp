@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/json_file.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "image_io/image_file.h"
 #include "image_io/png_bytes.h"
 #include "tf/lch.h"
@@ -32,13 +33,6 @@ bool isAllowed(char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte >= 0x80 ||
            (byte > 0x20 && std::string_view("./\\:*?\"'<>|,;=%$&`~#!").find(c) == std::string_view::npos);
-}
-
-std::string cutAtCharacter(std::string text, std::size_t most) {
-    if (text.size() <= most) return text;
-    while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xc0) == 0x80) --most;
-    text.resize(most);
-    return text;
 }
 
 std::string harmless(const std::string& name) {

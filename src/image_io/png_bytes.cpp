@@ -8,29 +8,18 @@
 
 #include <zlib.h>
 
+#include "image_io/png_chunks.h"
+
 namespace pellucid {
 
 namespace {
 
-using Bytes = std::vector<unsigned char>;
+using png::addChunk, png::addNumber, png::Bytes;
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 /// Of zlib: of pictures it makes a twelfth more bytes than the usual 6, in half the time or less.
 constexpr int kLevel = 4;
 constexpr unsigned char kGrey = 0, kRgba = 6; // colour types of the format
-
-void addNumber(Bytes& bytes, std::uint32_t value) {
-    for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<unsigned char>(value >> shift));
-}
-
-/// Length, name, data, and the checksum of the last two.
-void addChunk(Bytes& file, std::string_view name, const unsigned char* data, std::size_t size) {
-    addNumber(file, static_cast<std::uint32_t>(size));
-    const std::size_t begin = file.size();
-    file.insert(file.end(), name.begin(), name.end());
-    file.insert(file.end(), data, data + size);
-    addNumber(file, static_cast<std::uint32_t>(crc32(0, &file[begin], static_cast<uInt>(file.size() - begin))));
-}
 
 constexpr std::size_t kLongText = 1024; ///< bytes; longer ones are packed
 
@@ -42,7 +31,7 @@ void addText(Bytes& file, const PngText& text) {
     const bool isLong = text.text.size() > kLongText;
     if (isAscii && !isLong) {
         data.insert(data.end(), text.text.begin(), text.text.end());
-        return addChunk(file, "tEXt", data.data(), data.size());
+        return addChunk(file, "tEXt", data);
     }
     data.insert(data.end(), {static_cast<unsigned char>(isLong), 0, 0, 0}); // by zlib; no language, no translation
     if (isLong) {
@@ -55,7 +44,7 @@ void addText(Bytes& file, const PngText& text) {
     } else {
         data.insert(data.end(), text.text.begin(), text.text.end());
     }
-    addChunk(file, "iTXt", data.data(), data.size());
+    addChunk(file, "iTXt", data);
 }
 
 /// Packs what it is given, and adds it to the file in chunks.
@@ -76,13 +65,13 @@ public:
     void finish() {
         while (pack(Z_FINISH) != Z_STREAM_END) {
         }
-        if (m_used > 0) addChunk(m_file, "IDAT", m_packed.data(), m_used);
+        if (m_used > 0) addChunk(m_file, "IDAT", png::Span(m_packed).first(m_used));
     }
 
 private:
     int pack(int flush) {
         if (m_used == m_packed.size()) {
-            addChunk(m_file, "IDAT", m_packed.data(), m_used);
+            addChunk(m_file, "IDAT", png::Span(m_packed).first(m_used));
             m_used = 0;
         }
         m_stream.next_out = &m_packed[m_used];
@@ -164,13 +153,13 @@ struct Form {
 };
 
 Bytes pngOf(const Form& form, const float* values, std::span<const PngText> texts) {
-    Bytes file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, head;
+    Bytes file(png::kSignature.begin(), png::kSignature.end()), head;
     addNumber(head, static_cast<std::uint32_t>(form.width));
     addNumber(head, static_cast<std::uint32_t>(form.height));
     head.insert(head.end(), {form.bits, form.colorType, 0, 0, 0}); // packed, filtered and in order as usual
-    addChunk(file, "IHDR", head.data(), head.size());
+    addChunk(file, "IHDR", head);
     const unsigned char perceptual = 0;
-    if (form.isSrgb) addChunk(file, "sRGB", &perceptual, 1);
+    if (form.isSrgb) addChunk(file, "sRGB", {&perceptual, 1});
     for (const PngText& text : texts) addText(file, text);
 
     const std::size_t bytesPerValue = form.bits / 8, perRow = static_cast<std::size_t>(form.width) * form.channels;
@@ -187,7 +176,7 @@ Bytes pngOf(const Form& form, const float* values, std::span<const PngText> text
         packer.add(rows.filtered(row));
     }
     packer.finish();
-    addChunk(file, "IEND", nullptr, 0);
+    addChunk(file, "IEND", {});
     return file;
 }
 

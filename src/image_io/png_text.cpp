@@ -11,12 +11,12 @@
 #include <zlib.h>
 
 #include "base/error.h"
+#include "image_io/png_chunks.h"
 
 namespace pellucid {
 
 namespace {
 
-constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::uint32_t kLongestChunk = 0x7fffffff; ///< of the format
 constexpr std::size_t kLongestKeyword = 79;         ///< likewise
 
@@ -24,9 +24,9 @@ constexpr std::size_t kLongestKeyword = 79;         ///< likewise
 class Chunks {
 public:
     Chunks(std::istream& in, const std::string& path) : m_in(in), m_path(path) {
-        std::array<char, kSignature.size()> begin{};
+        std::array<char, png::kSignature.size()> begin{};
         m_in.read(begin.data(), begin.size());
-        if (!m_in || std::string_view(begin.data(), begin.size()) != kSignature) fail("this is no PNG file");
+        if (!m_in || std::string_view(begin.data(), begin.size()) != png::kSignature) fail("this is no PNG file");
     }
 
     /// False: that was the last one.
@@ -34,7 +34,7 @@ public:
         std::array<char, 8> head{};
         m_in.read(head.data(), head.size());
         if (!m_in) fail("the PNG file ends too early");
-        m_size = numberAt(head.data());
+        m_size = png::numberIn(png::bytesOf({head.data(), head.size()}));
         m_name.assign(head.data() + 4, 4);
         if (m_size > kLongestChunk) fail("a part of the PNG file is longer than the format allows");
         return m_name != "IEND";
@@ -55,9 +55,8 @@ public:
         std::array<char, 4> sum{};
         m_in.read(sum.data(), sum.size());
         if (!m_in) fail("the PNG file ends too early");
-        uLong crc = crc32(0, reinterpret_cast<const Bytef*>(m_name.data()), 4);
-        crc = crc32(crc, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
-        if (crc != numberAt(sum.data())) fail("a text in the PNG file is damaged");
+        const std::uint32_t stored = png::numberIn(png::bytesOf({sum.data(), sum.size()}));
+        if (png::checksumOf(m_name, png::bytesOf(bytes)) != stored) fail("a text in the PNG file is damaged");
         return bytes;
     }
     void skip() {
@@ -68,12 +67,6 @@ public:
     [[noreturn]] void fail(const std::string& what) const { throw FileError(what, m_path, "check the file"); }
 
 private:
-    static std::uint32_t numberAt(const char* from) {
-        std::uint32_t value = 0;
-        for (int i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(from[i]);
-        return value;
-    }
-
     std::istream& m_in;
     const std::string& m_path;
     std::string m_name;
@@ -176,9 +169,9 @@ std::vector<PngText> readPngTexts(const std::string& path) {
 
 bool isPngFile(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
-    std::array<char, kSignature.size()> begin{};
+    std::array<char, png::kSignature.size()> begin{};
     in.read(begin.data(), begin.size());
-    return in && std::string_view(begin.data(), begin.size()) == kSignature;
+    return in && std::string_view(begin.data(), begin.size()) == png::kSignature;
 }
 
 } // namespace pellucid

@@ -80,53 +80,9 @@ std::string elementsOf(const PlotDrawing& drawing) {
 
 constexpr const char* kFont = "font-family=\"system-ui, sans-serif\"";
 
-/// Length of the UTF-8 sequence at the beginning of `text`, 0 where there is none: overlong ones, surrogates and what
-/// lies beyond U+10FFFF are none.
-std::size_t sequenceAt(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned char first = byte(0);
-    if (first < 0x80) return 1;
-    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-    if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
-    for (std::size_t i = 1; i < length; ++i)
-        if ((byte(i) & 0xC0) != 0x80) return 0;
-    const unsigned char second = byte(1);
-    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
-        (first == 0xF4 && second > 0x8F))
-        return 0;
-    return length;
-}
-
 } // namespace
 
 Rgb inkOnLight(PlotInk ink) { return rgbFromHex(inkOf(ink).light); }
-
-std::string escapedXml(const std::string& text) {
-    std::string safe;
-    const std::string_view all = text;
-    for (std::size_t i = 0; i < all.size();) {
-        const std::size_t length = sequenceAt(all.substr(i));
-        const char c = all[i];
-        if (length == 0)
-            safe += "\xEF\xBF\xBD";
-        else if (length > 1)
-            safe += all.substr(i, length);
-        else if (c == '&')
-            safe += "&amp;";
-        else if (c == '<')
-            safe += "&lt;";
-        else if (c == '>')
-            safe += "&gt;";
-        else if (c == '"')
-            safe += "&quot;";
-        else if (c == '\'')
-            safe += "&#39;";
-        else
-            safe += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
-        i += std::max<std::size_t>(1, length);
-    }
-    return safe;
-}
 
 std::string plotStyle() {
     std::string dark;

@@ -4,13 +4,10 @@
 #include <span>
 #include <string>
 
+#include "base/xml_text.h"
 #include "report/plot_drawing.h"
 
 namespace pellucid {
-
-/// `text` as it may stand in XML and HTML, between tags and in attributes with double quotes. Control characters, which
-/// XML has no way to write, become blanks; bytes that are no UTF-8 become U+FFFD.
-std::string escapedXml(const std::string& text);
 
 /// The colour of an ink on a white ground; not of Own, which brings its own.
 Rgb inkOnLight(PlotInk ink);

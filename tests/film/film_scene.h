@@ -1,11 +1,11 @@
-// A small scene that films are made of, drawn without a GPU.
+// A small scene that films are made of.
 #pragma once
 
 #include "film/film.h"
 
 namespace pellucid::test {
 
-inline Scene filmScene(const std::string& sample = "sample:shells", int size = 12) {
+inline Scene sampleScene(const std::string& sample = "sample:shells", int size = 12) {
     VolumeSource source;
     source.path = sample;
     source.sampleSize = size;
@@ -14,7 +14,12 @@ inline Scene filmScene(const std::string& sample = "sample:shells", int size = 1
     inputs.tf = "tents:3";
     inputs.start = SceneInputs::Start::Tents;
     inputs.view = ViewAngles{30, 20, 1};
-    Scene scene = openScene(inputs);
+    return openScene(inputs);
+}
+
+/// The same, drawn without a GPU.
+inline Scene filmScene(const std::string& sample = "sample:shells", int size = 12) {
+    Scene scene = sampleScene(sample, size);
     scene.session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Cpu; });
     return scene;
 }

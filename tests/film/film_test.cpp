@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/atomic_file.h"
+#include "film_scene.h"
 #include "image_io/image_file.h"
 #include "render/camera_motion.h"
 #include "support/temp_folder.h"
@@ -18,18 +19,6 @@ using namespace pellucid;
 using namespace pellucid::test;
 
 namespace {
-
-Scene sampleScene(const std::string& sample = "sample:shells", int size = 12) {
-    VolumeSource source;
-    source.path = sample;
-    source.sampleSize = size;
-    SceneInputs inputs;
-    inputs.session = sessionOf(source);
-    inputs.tf = "tents:3";
-    inputs.start = SceneInputs::Start::Tents;
-    inputs.view = ViewAngles{30, 20, 1};
-    return openScene(inputs);
-}
 
 FilmSettings planOf(FilmKind kind, double seconds, double fps, double degrees = 360) {
     return {kind, seconds, fps, degrees};

@@ -15,11 +15,10 @@
 #include <new>
 #include <string>
 
-#include <sys/resource.h>
-
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "computing_time.h"
 
 #ifdef __SANITIZE_ADDRESS__
 extern "C" { // of the runtime of sanitizers; GCC 12 has no header that declares them
@@ -63,17 +62,6 @@ private:
 #endif
     static inline std::atomic<std::int64_t> s_now{0}, s_most{0};
 };
-
-inline double secondsOfComputing() {
-    double seconds = 0;
-    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-        rusage used{};
-        getrusage(who, &used);
-        for (const timeval& time : {used.ru_utime, used.ru_stime})
-            seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    }
-    return seconds;
-}
 
 template <class Open>
 nlohmann::json answerTo(const std::string& path, const Open& open) {

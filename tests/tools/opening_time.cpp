@@ -16,10 +16,10 @@
 #include <vector>
 
 #include <libdeflate.h>
-#include <sys/resource.h>
 
 #include "base/mapped_file.h"
 #include "base/stopwatch.h"
+#include "computing_time.h"
 #include "foreign/foreign_volume.h"
 #include "volume/loader.h"
 
@@ -87,18 +87,6 @@ Least inProcess(const std::string& path) {
 double median(std::vector<double> values) {
     std::ranges::sort(values);
     return values[values.size() / 2];
-}
-
-/// Of this process, and of those that it has waited for.
-double secondsOfComputing() {
-    double seconds = 0;
-    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-        rusage used{};
-        getrusage(who, &used);
-        for (const timeval& time : {used.ru_utime, used.ru_stime})
-            seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    }
-    return seconds;
 }
 
 /// Of each round.

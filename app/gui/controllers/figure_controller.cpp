@@ -22,34 +22,28 @@ constexpr int kRest = 250; // milliseconds that the dialog rests before it is dr
 } // namespace
 
 FigureController::FigureController(Services& services)
-    : m_services(services), m_preview(
+    : FileWork(
+          [](const FigureTask& task, const JobControl& job) { return makeFigure(task, job); },
+          [this](const FigureTask& task, const FigureFile& figure) {
+              const QString path = QString::fromStdString(task.path);
+              m_services.saySaved(
+                  path,
+                  tr("%1 × %2 mm").arg(QString::number(figure.width, 'f', 1), QString::number(figure.height, 'f', 1)));
+              Q_EMIT saved(path);
+          }),
+      m_services(services), m_preview(
                                 &FigureController::previewOf,
                                 [this](const Sketch&, Preview& preview) {
                                     if (m_dialog) m_dialog->showPreview(preview.picture, preview.height);
                                 },
-                                WhenBusy::FinishOld),
-      m_job([](const std::shared_ptr<const FigureTask>& task,
-               const JobControl& job) { return std::make_shared<const FigureFile>(makeFigure(*task, job)); },
-            [this](const std::shared_ptr<const FigureTask>& task, std::shared_ptr<const FigureFile>& figure) {
-                const QString path = QString::fromStdString(task->path);
-                m_services.saySaved(
-                    path, tr("%1 × %2 mm")
-                              .arg(QString::number(figure->width, 'f', 1), QString::number(figure->height, 'f', 1)));
-                Q_EMIT saved(path);
-            },
-            WhenBusy::Queue) {
-    connect(&m_job, &JobBase::busyChanged, this, &FigureController::busyChanged);
-    connect(&m_job, &JobBase::progress, this, &FigureController::progress);
-    connect(&m_job, &JobBase::cancelled, this, &FigureController::cancelled);
+                                WhenBusy::FinishOld) {
     connect(&m_preview, &JobBase::failed, this, [this](const Error& error) {
         if (m_dialog) m_dialog->showNoPreview(QString::fromStdString(error.what()));
     });
-    services.showFailuresOf(m_job, tr("Cannot save the figure"));
+    services.showFailuresOf(job(), tr("Cannot save the figure"));
 }
 
 FigureController::~FigureController() = default;
-
-QString FigureController::busyText() const { return tr("Saving %1…").arg(m_name); }
 
 void FigureController::addActions() {
     ActionMenu menu(m_services.actions(), tr("&File"), [this] { return m_services.store().hasVolume(); });
@@ -99,9 +93,7 @@ void FigureController::choose() {
         }
         if (!mayReplaceFile(m_services.window(), chosen.path, tr("Save figure for print"))) continue;
         keepFolderOf("figureFolder", chosen.path);
-        m_name = QFileInfo(chosen.path).fileName();
-        m_job.start(std::make_shared<const FigureTask>(task), chosen.path);
-        Q_EMIT busyChanged();
+        start(task);
         break;
     }
     m_preview.cancel();

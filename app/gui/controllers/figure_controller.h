@@ -8,7 +8,7 @@
 #include <QPointer>
 #include <QSize>
 
-#include "jobs/job.h"
+#include "jobs/background_work.h"
 
 namespace pellucid {
 class Workspace;
@@ -21,7 +21,7 @@ namespace pellucid::gui {
 class FigureDialog;
 class Services;
 
-class FigureController : public QObject {
+class FigureController : public FileWork<FigureTask, FigureFile> {
     Q_OBJECT
 public:
     explicit FigureController(Services& services);
@@ -30,14 +30,7 @@ public:
     void addActions();
     void setSeenSize(const QSize& pixels) { m_seen = pixels; } ///< of the view
 
-    void cancel() { m_job.cancel(); }
-    bool isBusy() const { return m_job.isRunning(); }
-    QString busyText() const;
-
 Q_SIGNALS:
-    void busyChanged();
-    void progress(double fraction);
-    void cancelled();
     void saved(const QString& path);
 
 private:
@@ -55,11 +48,9 @@ private:
     void choose();
 
     Services& m_services;
-    QString m_name; ///< of the file that is being written
     QSize m_seen{4, 3};
     QPointer<FigureDialog> m_dialog; ///< the one that is open
     Job<Sketch, Preview> m_preview;
-    Job<std::shared_ptr<const FigureTask>, std::shared_ptr<const FigureFile>> m_job;
 };
 
 } // namespace pellucid::gui

@@ -23,26 +23,19 @@ QString presentView(const Scene& scene) {
 } // namespace
 
 FilmController::FilmController(Services& services)
-    : m_services(services),
-      m_job([](const std::shared_ptr<const FilmTask>& task,
-               const JobControl& job) { return std::make_shared<const FilmResult>(makeFilm(*task, job)); },
-            [this](const std::shared_ptr<const FilmTask>& task, std::shared_ptr<const FilmResult>& film) {
-                for (const std::string& frame : film->passedOver)
-                    m_services.notices().add({tr("Not in the film: %1").arg(QString::fromStdString(frame))});
-                const QString path = QString::fromStdString(task->path);
-                m_services.saySaved(path, tr("%L1 pictures").arg(film->pictures));
-                Q_EMIT saved(path);
-            },
-            WhenBusy::Queue) {
-    connect(&m_job, &JobBase::busyChanged, this, &FilmController::busyChanged);
-    connect(&m_job, &JobBase::progress, this, &FilmController::progress);
-    connect(&m_job, &JobBase::cancelled, this, &FilmController::cancelled);
-    services.showFailuresOf(m_job, tr("Cannot save the film"));
+    : FileWork(&makeFilm,
+               [this](const FilmTask& task, const FilmResult& film) {
+                   for (const std::string& frame : film.passedOver)
+                       m_services.notices().add({tr("Not in the film: %1").arg(QString::fromStdString(frame))});
+                   const QString path = QString::fromStdString(task.path);
+                   m_services.saySaved(path, tr("%L1 pictures").arg(film.pictures));
+                   Q_EMIT saved(path);
+               }),
+      m_services(services) {
+    services.showFailuresOf(job(), tr("Cannot save the film"));
 }
 
 FilmController::~FilmController() = default;
-
-QString FilmController::busyText() const { return tr("Saving %1…").arg(m_name); }
 
 void FilmController::addActions() {
     ActionMenu menu(m_services.actions(), tr("&File"), [this] { return m_services.store().hasVolume(); });
@@ -53,9 +46,7 @@ void FilmController::addActions() {
 
 void FilmController::save(const FilmTask& task) {
     if (!m_services.attempt(tr("Cannot save the film"), [&] { checkFilm(task); })) return;
-    m_name = QFileInfo(QString::fromStdString(task.path)).fileName();
-    m_job.start(std::make_shared<const FilmTask>(task), QString::fromStdString(task.path));
-    Q_EMIT busyChanged();
+    start(task);
 }
 
 void FilmController::choose() {

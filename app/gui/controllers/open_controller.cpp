@@ -92,11 +92,7 @@ OpenController::OpenController(Services& services, SaveController& saving)
                  QMetaObject::invokeMethod(
                      this, [this, look, contents] { openSeries(look, contents); }, Qt::QueuedConnection);
              }) {
-    for (JobBase* job : std::initializer_list<JobBase*>{&m_open, &m_data, &m_look}) {
-        connect(job, &JobBase::busyChanged, this, &OpenController::busyChanged);
-        connect(job, &JobBase::progress, this, &OpenController::progress);
-        connect(job, &JobBase::cancelled, this, &OpenController::cancelled);
-    }
+    for (JobBase* job : std::initializer_list<JobBase*>{&m_open, &m_data, &m_look}) follow(*job);
     connect(&saving, &SaveController::sessionPathChanged, this, &OpenController::updateRecentFiles);
     services.showFailuresOf(m_data, tr("Cannot change the data"));
     services.showFailuresOf(m_look, tr("Cannot open the file"));

@@ -6,7 +6,7 @@
 #include <QObject>
 #include <QStringList>
 
-#include "jobs/job.h"
+#include "jobs/background_work.h"
 #include "session/session_json.h"
 #include "store/session_store.h"
 #include "volume/file_contents.h"
@@ -18,7 +18,7 @@ namespace pellucid::gui {
 class SaveController;
 class Services;
 
-class OpenController : public QObject {
+class OpenController : public BackgroundWork {
     Q_OBJECT
 public:
     OpenController(Services& services, SaveController& saving);
@@ -58,18 +58,15 @@ public:
     /// are made of several of them, a ground, an overlay.
     void editInJob(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
 
-    bool isBusy() const { return m_open.isRunning() || m_data.isRunning() || m_look.isRunning(); }
-    const QString& busyText() const { return m_busyText; } ///< "Opening scan.nrrd…"
-    void cancel();
+    bool isBusy() const override { return m_open.isRunning() || m_data.isRunning() || m_look.isRunning(); }
+    QString busyText() const override { return m_busyText; }
+    void cancel() override;
 
 Q_SIGNALS:
-    void busyChanged();
-    void progress(double fraction);
     void opened(); ///< a volume or a session
     void failed(const pellucid::Error& error);
     void tfFailed(const pellucid::Error& error); ///< the volume is open, its transfer function is the default
-    void cancelled();
-    void automaticStartWanted(); ///< in the place of a transfer function
+    void automaticStartWanted();                 ///< in the place of a transfer function
 
 private:
     struct Request {

@@ -100,11 +100,7 @@ SaveController::SaveController(Services& services, FieldController& fields,
               Q_EMIT volumeSaved(task.path);
           },
           WhenBusy::Queue) {
-    for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports, &m_volumes}) {
-        connect(job, &JobBase::busyChanged, this, &SaveController::busyChanged);
-        connect(job, &JobBase::progress, this, &SaveController::progress);
-        connect(job, &JobBase::cancelled, this, &SaveController::cancelled);
-    }
+    for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports, &m_volumes}) follow(*job);
     services.showFailuresOf(m_reports, tr("Cannot save the report"));
     services.showFailuresOf(m_images, tr("Cannot save the image"));
     services.showFailuresOf(m_volumes, tr("Cannot save the volume"));

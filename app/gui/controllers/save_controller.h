@@ -6,7 +6,7 @@
 #include "dialogs/save_image_dialog.h"
 #include "dialogs/save_volume_dialog.h"
 #include "image_io/picture_text.h"
-#include "jobs/job.h"
+#include "jobs/background_work.h"
 #include "session/scene.h"
 
 namespace pellucid::gui {
@@ -16,7 +16,7 @@ class PictureSaliencyController;
 class RulerController;
 class Services;
 
-class SaveController : public QObject {
+class SaveController : public BackgroundWork {
     Q_OBJECT
 public:
     SaveController(Services& services, FieldController& fields, const PictureSaliencyController& pictureSaliency,
@@ -54,20 +54,17 @@ public:
 
     QAction* barsAction() const { return m_barsAction; }
 
-    bool isBusy() const { return m_images.isRunning() || m_reports.isRunning() || m_volumes.isRunning(); }
-    const QString& busyText() const { return m_busyText; }
-    void cancel() {
+    bool isBusy() const override { return m_images.isRunning() || m_reports.isRunning() || m_volumes.isRunning(); }
+    QString busyText() const override { return m_busyText; }
+    void cancel() override {
         m_images.cancel();
         m_reports.cancel();
         m_volumes.cancel();
     }
 
 Q_SIGNALS:
-    void busyChanged();
-    void progress(double fraction);
     void imageSaved(const QString& path);
     void volumeSaved(const QString& path);
-    void cancelled();
     void sessionPathChanged();
 
 private:

@@ -20,22 +20,12 @@ constexpr int kAnySize = 16; // a page has the size of its window
 } // namespace
 
 ShareController::ShareController(Services& services)
-    : m_services(services),
-      m_job([](const std::shared_ptr<const ShareTask>& task,
-               const JobControl& job) { return std::make_shared<const SharedPage>(makeShare(*task, job)); },
-            [this](const std::shared_ptr<const ShareTask>& task, std::shared_ptr<const SharedPage>& page) {
-                tell(*task, *page);
-            },
-            WhenBusy::Queue) {
-    connect(&m_job, &JobBase::busyChanged, this, &ShareController::busyChanged);
-    connect(&m_job, &JobBase::progress, this, &ShareController::progress);
-    connect(&m_job, &JobBase::cancelled, this, &ShareController::cancelled);
-    services.showFailuresOf(m_job, tr("Cannot write the page"));
+    : FileWork(&makeShare, [this](const ShareTask& task, const SharedPage& page) { tell(task, page); }),
+      m_services(services) {
+    services.showFailuresOf(job(), tr("Cannot write the page"));
 }
 
 ShareController::~ShareController() = default;
-
-QString ShareController::busyText() const { return tr("Saving %1…").arg(m_name); }
 
 void ShareController::addActions() {
     ActionMenu menu(m_services.actions(), tr("&File"), [this] { return m_services.store().hasVolume(); });
@@ -76,9 +66,7 @@ void ShareController::choose() {
         keepFolderOf("shareFolder", chosen.path);
         task.settings = chosen.settings;
         task.path = chosen.path.toStdString();
-        m_name = QFileInfo(chosen.path).fileName();
-        m_job.start(std::make_shared<const ShareTask>(task), chosen.path);
-        Q_EMIT busyChanged();
+        start(task);
         return;
     }
 }

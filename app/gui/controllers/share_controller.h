@@ -1,11 +1,9 @@
 // Web pages of what the window shows.
 #pragma once
 
-#include <memory>
-
 #include <QObject>
 
-#include "jobs/job.h"
+#include "jobs/background_work.h"
 
 namespace pellucid {
 struct SharedPage;
@@ -16,7 +14,7 @@ namespace pellucid::gui {
 
 class Services;
 
-class ShareController : public QObject {
+class ShareController : public FileWork<ShareTask, SharedPage> {
     Q_OBJECT
 public:
     explicit ShareController(Services& services);
@@ -24,14 +22,7 @@ public:
 
     void addActions();
 
-    void cancel() { m_job.cancel(); }
-    bool isBusy() const { return m_job.isRunning(); }
-    QString busyText() const;
-
 Q_SIGNALS:
-    void busyChanged();
-    void progress(double fraction);
-    void cancelled();
     void saved(const QString& path);
 
 private:
@@ -39,8 +30,6 @@ private:
     void tell(const ShareTask& task, const SharedPage& page);
 
     Services& m_services;
-    QString m_name; ///< of the file that is being written
-    Job<std::shared_ptr<const ShareTask>, std::shared_ptr<const SharedPage>> m_job;
 };
 
 } // namespace pellucid::gui

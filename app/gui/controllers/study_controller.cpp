@@ -60,11 +60,7 @@ StudyController::StudyController(Services& services)
                   m_services.notices().add({tr("The report is in %1. No program was found to show it").arg(file)});
               Q_EMIT analyzed(file);
           }) {
-    for (JobBase* job : std::initializer_list<JobBase*>{&m_preparing, &m_analyzing}) {
-        connect(job, &JobBase::busyChanged, this, &StudyController::busyChanged);
-        connect(job, &JobBase::progress, this, &StudyController::progress);
-        connect(job, &JobBase::cancelled, this, &StudyController::cancelled);
-    }
+    for (JobBase* job : std::initializer_list<JobBase*>{&m_preparing, &m_analyzing}) follow(*job);
     services.showFailuresOf(m_analyzing, tr("Cannot analyze the study"));
     services.showFailuresOf(m_preparing, tr("Cannot prepare the study"));
 }

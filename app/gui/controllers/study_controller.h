@@ -4,7 +4,7 @@
 #include <QObject>
 #include <QPointer>
 
-#include "jobs/job.h"
+#include "jobs/background_work.h"
 #include "runner/study_window.h"
 #include "study/add_view.h"
 #include "study/analysis.h"
@@ -14,7 +14,7 @@ namespace pellucid::gui {
 
 class Services;
 
-class StudyController : public QObject {
+class StudyController : public BackgroundWork {
     Q_OBJECT
 public:
     explicit StudyController(Services& services);
@@ -34,19 +34,16 @@ public:
     void setStudy(const QString& path);
     QString preparedFolder() const; ///< where the latest study was prepared, or run
 
-    bool isBusy() const { return m_preparing.isRunning() || m_analyzing.isRunning(); }
-    QString busyText() const {
+    bool isBusy() const override { return m_preparing.isRunning() || m_analyzing.isRunning(); }
+    QString busyText() const override {
         return m_preparing.isRunning() ? tr("Preparing the study…") : tr("Analyzing the study…");
     }
-    void cancel() {
+    void cancel() override {
         m_preparing.cancel();
         m_analyzing.cancel();
     }
 
 Q_SIGNALS:
-    void busyChanged();
-    void progress(double fraction);
-    void cancelled();
     void prepared(const QString& folder);
     void analyzed(const QString& report); ///< a file
 

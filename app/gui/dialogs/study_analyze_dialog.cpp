@@ -28,7 +28,6 @@ StudyAnalyzeDialog::StudyAnalyzeDialog(const QString& folder, QWidget* parent)
                        "repeated pictures differ far more than other people's. The report says who and why"))),
       m_about(wrappedLabel("studyAbout", this)),
       m_buttons(closingButtons(*this, QDialogButtonBox::Ok | QDialogButtonBox::Cancel)) {
-    m_participants->setAccessibleName(tr("Participants"));
     setObjectName("studyAnalyzeDialog");
     setWindowTitle(tr("Analyze a study"));
     elideInTheMiddle(*m_participants);

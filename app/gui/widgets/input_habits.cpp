@@ -41,7 +41,7 @@ void keepInside(QWidget& tip) {
     if (place != tip.pos()) tip.move(place);
 }
 
-constexpr auto kNamedByTip = "namedByTip";
+constexpr auto kNamedByTip = "namedByTip"; ///< the name
 
 /// What shows a value without saying what it is of.
 bool needsName(const QWidget& widget) {
@@ -56,19 +56,21 @@ bool needsName(const QWidget& widget) {
            qobject_cast<const QAbstractItemView*>(&widget) != nullptr;
 }
 
+/// Whether the toolkit calls it by a label; lists and tables it does not.
 bool hasLabel(const QWidget& widget) {
-    if (widget.parentWidget() == nullptr) return false;
+    if (widget.parentWidget() == nullptr || qobject_cast<const QAbstractItemView*>(&widget) != nullptr) return false;
     const auto labels = widget.parentWidget()->findChildren<QLabel*>(QString(), Qt::FindDirectChildrenOnly);
     return std::ranges::any_of(labels, [&](const QLabel* label) { return label->buddy() == &widget; });
 }
 
 /// What nothing names is called by the first words of its tip, for those who hear it.
 void nameByTip(QWidget& widget) {
-    const bool isNamed = !widget.accessibleName().isEmpty() && !widget.property(kNamedByTip).toBool();
-    if (isNamed || !needsName(widget)) return;
+    // What somebody has called it since counts more.
+    const QString now = widget.accessibleName();
+    if ((!now.isEmpty() && now != widget.property(kNamedByTip).toString()) || !needsName(widget)) return;
     static const QRegularExpression kEnd("[.,:;\n(]");
     const QString name = hasLabel(widget) ? QString() : widget.toolTip().section(kEnd, 0, 0).trimmed();
-    widget.setProperty(kNamedByTip, true);
+    widget.setProperty(kNamedByTip, name);
     widget.setAccessibleName(name);
 }
 

@@ -117,9 +117,9 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     m_services->actions().build(*this);
     m_controllers->opening.updateRecentFiles();
     setRecentView(*m_services, *m_view);
-    m_status =
-        new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, m_controllers->figures,
-                       m_controllers->films, m_controllers->sharing, m_controllers->studies, *m_view, *statusBar());
+    Controllers& c = *m_controllers;
+    m_status = new StatusLine(*m_services, {&c.opening, &c.saving, &c.figures, &c.films, &c.sharing, &c.studies},
+                              *m_view, *statusBar());
 
     connect(m_view, &VolumeView::pictureShown, this, [this] {
         const PictureInfo& picture = m_view->picture();

@@ -1,14 +1,11 @@
 #include "window/status_line.h"
 
+#include <algorithm>
+
 #include <QStatusBar>
 
 #include "base/memory.h"
-#include "controllers/figure_controller.h"
-#include "controllers/film_controller.h"
-#include "controllers/open_controller.h"
-#include "controllers/save_controller.h"
-#include "controllers/share_controller.h"
-#include "controllers/study_controller.h"
+#include "jobs/background_work.h"
 #include "render/camera_motion.h"
 #include "services/services.h"
 #include "view/volume_view.h"
@@ -25,11 +22,8 @@ constexpr double kMostMemory = 1e6;                    // GiB: what is more stan
 
 } // namespace
 
-StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, FigureController& figures,
-                       FilmController& films, ShareController& sharing, StudyController& studies, VolumeView& view,
-                       QStatusBar& bar)
-    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_figures(figures), m_films(films),
-      m_sharing(sharing), m_studies(studies), m_view(view), m_bar(bar),
+StatusLine::StatusLine(Services& services, std::vector<BackgroundWork*> works, VolumeView& view, QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_works(std::move(works)), m_view(view), m_bar(bar),
       m_volume(named(new QLabel(&bar), "volumeLabel")),
       m_camera(named(new QLabel(&bar), "cameraLabel",
                      tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
@@ -54,30 +48,17 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
     m_memory->hide();
     connect(&m_watch, &QTimer::timeout, this, &StatusLine::followMemory);
 
-    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving, &figures, &films, &sharing, &studies] {
-        opening.cancel();
-        saving.cancel();
-        figures.cancel();
-        films.cancel();
-        sharing.cancel();
-        studies.cancel();
+    connect(m_cancel, &QToolButton::clicked, this, [this] {
+        for (BackgroundWork* work : m_works) work->cancel();
     });
-    const auto watch = [this](auto& controller) {
-        using Controller = std::remove_reference_t<decltype(controller)>;
-        connect(&controller, &Controller::progress, this, [this](double fraction) {
+    for (BackgroundWork* work : m_works) {
+        connect(work, &BackgroundWork::progress, this, [this](double fraction) {
             m_progress->setRange(0, 100);
             m_progress->setValue(static_cast<int>(100 * fraction));
         });
-        connect(&controller, &Controller::cancelled, this,
-                [this] { m_bar.showMessage(tr("Cancelled"), kMessageTime); });
-        connect(&controller, &Controller::busyChanged, this, &StatusLine::followBackground);
-    };
-    watch(opening);
-    watch(saving);
-    watch(figures);
-    watch(films);
-    watch(sharing);
-    watch(studies);
+        connect(work, &BackgroundWork::cancelled, this, [this] { m_bar.showMessage(tr("Cancelled"), kMessageTime); });
+        connect(work, &BackgroundWork::busyChanged, this, &StatusLine::followBackground);
+    }
     connect(&services, &Services::message, this,
             [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
     connect(&bar, &QStatusBar::messageChanged, this, [this](const QString& text) {
@@ -168,15 +149,9 @@ void StatusLine::followMemory() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_opening.isBusy(), saving = m_saving.isBusy(), drawing = m_figures.isBusy(),
-               filming = m_films.isBusy(), sharing = m_sharing.isBusy();
-    const bool busy = opening || saving || drawing || filming || sharing || m_studies.isBusy();
-    const QString text = opening   ? m_opening.busyText()
-                         : saving  ? m_saving.busyText()
-                         : drawing ? m_figures.busyText()
-                         : filming ? m_films.busyText()
-                         : sharing ? m_sharing.busyText()
-                                   : m_studies.busyText();
+    const auto work = std::ranges::find_if(m_works, &BackgroundWork::isBusy);
+    const bool busy = work != m_works.end();
+    const QString text = busy ? (*work)->busyText() : QString();
     if (busy && (m_cancel->isHidden() || text != m_background->text())) m_progress->setRange(0, 0);
     m_background->setText(text);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})

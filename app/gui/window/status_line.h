@@ -1,6 +1,8 @@
 // The line below the picture: what is open, from where it is seen, what draws and what measures, and what is under way.
 #pragma once
 
+#include <vector>
+
 #include <QObject>
 #include <QTimer>
 
@@ -11,21 +13,15 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class VolumeView;
-class OpenController;
-class FigureController;
-class FilmController;
-class SaveController;
+class BackgroundWork;
 class Services;
-class ShareController;
-class StudyController;
+class VolumeView;
 
 class StatusLine : public QObject {
     Q_OBJECT
 public:
-    StatusLine(Services& services, OpenController& opening, SaveController& saving, FigureController& figures,
-               FilmController& films, ShareController& sharing, StudyController& studies, VolumeView& view,
-               QStatusBar& bar);
+    /// `works`: of several that are busy the first one is named. All outlive this.
+    StatusLine(Services& services, std::vector<BackgroundWork*> works, VolumeView& view, QStatusBar& bar);
 
     /// Says how much memory is in use, from now on.
     void watchMemory();
@@ -38,12 +34,7 @@ private:
     void followBackground();
 
     Services& m_services;
-    OpenController& m_opening;
-    SaveController& m_saving;
-    FigureController& m_figures;
-    FilmController& m_films;
-    ShareController& m_sharing;
-    StudyController& m_studies;
+    const std::vector<BackgroundWork*> m_works;
     VolumeView& m_view;
     QStatusBar& m_bar;
     QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background, *m_hint, *m_memory;
