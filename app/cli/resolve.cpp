@@ -111,10 +111,7 @@ std::vector<std::string> tfNotices(const std::optional<std::string>& spec, const
     std::error_code failure;
     if (!spec || !std::filesystem::is_regular_file(spec->substr(0, spec->rfind('#')), failure) || !isForeignTf(*spec))
         return {};
-    const ReadTf read = readTfNamed(*spec);
-    // The published profile takes Voreen's files as the thesis did.
-    if (read.opensAsItIs && scene.session.measure->profile == Profile::Published) return {};
-    return openingNotices(read, scene.data->geometry());
+    return openingNoticesIn(scene, readTfNamed(*spec));
 }
 
 } // namespace

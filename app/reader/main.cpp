@@ -82,8 +82,8 @@ void answer(const ReaderRequest& request) {
     const BeforeFile before = [&](std::uint64_t bytes) { limits.beforeFile(bytes); };
     before(0);
     const std::unique_ptr<ForeignVolume> volume = openForeign(request.path, request.array, before);
-    if (request.task == ReaderRequest::Task::Describe) return say(jsonOf(volume->contents()));
-    if (request.task == ReaderRequest::Task::List) return say({{"files", volume->files()}});
+    if (request.task == ReaderRequest::Task::Describe)
+        return say(jsonOf(ReaderDescription{volume->contents(), volume->files()}));
     const ReaderLayout layout = volume->layout(request.step);
     say(jsonOf(layout));
     limits.setImage(volume->largestImageBytes());

@@ -12,6 +12,12 @@ VolatilityKind volatilityKind(const Session& session) {
     return session.measure->profile == Profile::Published ? VolatilityKind::Published : VolatilityKind::Population;
 }
 
+std::vector<std::string> openingNoticesIn(const Scene& scene, const ReadTf& read) {
+    // The published profile takes Voreen's files as the thesis did.
+    if (read.opensAsItIs && scene.session.measure->profile == Profile::Published) return {};
+    return openingNotices(read, scene.data->geometry());
+}
+
 bool sameOrigin(const Variable& a, const Variable& b) {
     return a.derivation == b.derivation && (a.derivation || a.source == b.source);
 }

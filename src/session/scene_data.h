@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "session/scene.h"
+#include "tf/formats/tf_file.h"
 
 namespace pellucid {
 
@@ -20,6 +21,10 @@ bool sameData(const std::vector<Variable>& a, const std::vector<Variable>& b);
 /// The files that a session's data are in: those of its variables, of its ground and of its
 /// overlay, as filesOf(VolumeSource) says.
 std::vector<std::string> filesOf(const Session& session);
+
+/// What is to be said of a transfer function of another program where it is opened in a scene: openingNotices(), and
+/// nothing of one that the scene's profile takes as it is.
+std::vector<std::string> openingNoticesIn(const Scene& scene, const ReadTf& read);
 
 /// The window of the variable that `series` has the values of: its own, or all values.
 ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job = {});

@@ -9,6 +9,7 @@
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
 #include "volume/procedural.h"
+#include "volume/process/reader_process.h"
 #include "volume/series.h"
 
 namespace pellucid {
@@ -180,12 +181,15 @@ Volume loadHere(const VolumeSource& source, const JobControl& job) {
 std::vector<std::string> filesOf(const VolumeSource& source) {
     if (source.isSample()) return {};
     std::vector<std::string> files;
-    for (const std::string& path : seriesFiles(source)) {
+    const std::vector<std::string> paths = seriesFiles(source);
+    for (const std::string& path : paths) {
         files.push_back(path);
         const VolumeFormat* format = source.raw ? nullptr : findFormat(path);
         if (format == nullptr || format->dataFiles == nullptr) continue;
         try {
             for (std::string& data : format->dataFiles(path)) files.push_back(std::move(data));
+        } catch (const TakesTooLong&) {
+            if (paths.size() == 1) throw; // it would the next time
         } catch (const Error&) {
             continue; // loadVolume() tells what is wrong with it
         }

@@ -75,8 +75,8 @@ Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
 void setVolumeLoader(std::function<Volume(const VolumeSource&, const JobControl&)> load);
 Volume loadHere(const VolumeSource& source, const JobControl& job = {});
 
-/// The files of all frames: those named and, where their headers name others, those of the data; none for a sample. A
-/// header that cannot be read names none here; loadVolume() tells what is wrong with it.
+/// The files of all frames: those named and, where headers name others, those of the data; none for a sample. A header
+/// that cannot be read names none; one that alone takes its reader too long throws TakesTooLong (reader_process.h).
 std::vector<std::string> filesOf(const VolumeSource& source);
 
 /// Writes float32 or the volume's own type as NRRD (gzip), through a temporary file beside `path` that is renamed.

@@ -413,6 +413,7 @@ TEST_CASE("what happens to the process that reads is told in a sentence", "[dico
     with("echo once >> '" + folder.path("count") + "'; read line; kill -XCPU $$");
     CHECK_THROWS_WITH(listSeries(at(path)), Contains("takes too long") && Contains("a.dcm"));
     CHECK(fs::file_size(folder.path("count")) == 5); // "once" and a line end
+    CHECK_THROWS_AS(filesOf(at(path)), TakesTooLong); // with which commands begin
     with("read line; echo nonsense");
     CHECK_THROWS_WITH(loadVolume(at(path)), Contains("can be understood"));
     with("read line; echo '{\"layout\":{\"axes\":[]}}'; sleep 100");

@@ -1,8 +1,10 @@
 // TIFF stacks and folders of pictures through pellucid-tiff-reader and pellucid-image-reader.
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include <zlib.h>
 
@@ -12,6 +14,7 @@
 #include "support/tiff_writer.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
+#include "volume/process/reader_process.h"
 #include "volume/series.h"
 
 using namespace pellucid;
@@ -183,6 +186,146 @@ TEST_CASE("a folder of pictures is one volume, in the order in which people coun
     fs::create_directory(folder.path("frames"));
     for (const char* name : {"frames/t1.tif", "frames/t2.tif"}) folder.write(name, tiffFile(pages(3)));
     CHECK(listSeries(at(folder.path("frames"))).frames.size() == 2);
+}
+
+TEST_CASE("pixels that stand in a TIFF file as they are are read there, without the library", "[images]") {
+    const TempFolder folder;
+    const struct Restore {
+        ~Restore() { setReaderProgram({}); }
+    } restore;
+    const std::string reader = (fs::read_symlink("/proc/self/exe").parent_path() / "pellucid-tiff-reader").string();
+    // Each line is kept before it is passed on.
+    const std::string keep = " | while IFS= read -r line; do printf '%s\\n' \"$line\" >>'" + folder.path("said") +
+                             "'; printf '%s\\n' \"$line\"; done\n";
+    const std::string program = folder.write("reader.sh", "#!/bin/sh\n'" + reader + "'" + keep);
+    fs::permissions(program, fs::perms::owner_all);
+    setReaderProgram(program);
+    // The volume, and whether the reader has said where its values are.
+    const auto load = [&](const std::string& bytes, int step = 0) {
+        fs::remove(folder.path("said"));
+        VolumeSource source = at(folder.write("a.tif", bytes));
+        source.step = step;
+        Volume volume = loadVolume(source);
+        const bool isInFile = folder.read("said").find("\"in_file\"") != std::string::npos;
+        return std::pair{std::move(volume), isInFile};
+    };
+    const auto isRight = [](const Volume& volume, int first = 0) {
+        bool right = volume.dims() == Int3(3, 2, 4);
+        for (int z = 0; right && z < 4; ++z)
+            for (int i = 0; i < 6; ++i)
+                right &= volume.value(static_cast<std::size_t>(6 * z + i)) == 100 * (z + first) + i;
+        return right;
+    };
+    SECTION("in strips of one row or of all, one page behind the other") {
+        for (const int rows : {0, 1}) {
+            const auto [volume, isInFile] = load(tiffFile(pages(4), {false, true, rows}));
+            CHECK(isInFile);
+            CHECK(isRight(volume));
+        }
+    }
+    SECTION("in the other order of bytes") {
+        std::vector<TiffPage> swapped = pages(4);
+        for (TiffPage& page : swapped)
+            for (std::size_t i = 0; i < page.pixels.size(); i += 2) std::swap(page.pixels[i], page.pixels[i + 1]);
+        const auto [volume, isInFile] = load(tiffFile(swapped, {true, true}));
+        CHECK(isInFile);
+        CHECK(isRight(volume));
+        const auto [apart, isThere] = load(tiffFile(swapped, {true, false}));
+        CHECK(isThere);
+        CHECK(isRight(apart));
+    }
+    SECTION("of a step and of a region") {
+        const std::string steps = "ImageJ=1.53t\nimages=8\nslices=4\nframes=2\nhyperstack=true\n";
+        const std::string bytes = tiffFile(pages(8, steps), {false, true});
+        const auto [volume, isInFile] = load(bytes, 1);
+        CHECK(isInFile);
+        CHECK(isRight(volume, 4));
+        VolumeSource part = at(folder.path("a.tif"));
+        part.step = 1;
+        part.region = VoxelRegion{{1, 1, 2}, {3, 2, 4}};
+        const Volume region = loadVolume(part);
+        CHECK(region.dims() == Int3(2, 1, 2));
+        CHECK(region.value(0) == 604); // page 4 + 2, pixel 3 + 1
+        CHECK(region.value(3) == 705);
+    }
+    SECTION("between directories") {
+        const auto [volume, isInFile] = load(tiffFile(pages(4)));
+        CHECK(isInFile);
+        CHECK(isRight(volume));
+        VolumeSource part = at(folder.path("a.tif"));
+        part.region = VoxelRegion{{1, 0, 1}, {3, 2, 4}};
+        CHECK(loadVolume(part).value(5) == 202); // page 2, pixel 2
+        part.region.reset();
+        part.downsample = 2;
+        CHECK(loadVolume(part).dims() == Int3(2, 1, 2));
+    }
+    SECTION("channels are components, whether they follow slices or take turns with them") {
+        for (const bool inTurn : {false, true}) {
+            const std::string order = inTurn ? "XYCZT" : "XYZCT";
+            const std::string words =
+                "<?xml version=\"1.0\"?><OME><Image ID=\"Image:0\"><Pixels ID=\"Pixels:0\" DimensionOrder=\"" + order +
+                "\" Type=\"uint16\" SizeX=\"3\" SizeY=\"2\" SizeZ=\"2\" SizeC=\"2\" SizeT=\"1\"><TiffData/>"
+                "</Pixels></Image></OME>";
+            const std::string bytes = tiffFile(pages(4, words), {false, true});
+            CHECK(load(bytes).second);
+            VolumeSource second = at(folder.path("a.tif"));
+            second.component = 1;
+            const Volume volume = loadVolume(second);
+            CHECK(volume.value(0) == (inTurn ? 100 : 200));
+            CHECK(volume.value(6) == 300);
+        }
+    }
+    SECTION("of a large stack of ImageJ, which has a directory of its first page alone") {
+        const std::string words = "ImageJ=1.53t\nimages=4\nslices=4\n";
+        const auto [volume, isInFile] = load(tiffFile(pages(4, words), {.pixelsTogether = true, .oneDirectory = true}));
+        CHECK(isInFile);
+        CHECK(isRight(volume));
+        CHECK(volume.notices.empty());
+        const std::string turns = "ImageJ=1.53t\nimages=4\nchannels=2\nslices=2\nhyperstack=true\n";
+        CHECK(load(tiffFile(pages(4, turns), {.pixelsTogether = true, .oneDirectory = true})).second);
+        VolumeSource second = at(folder.path("a.tif"));
+        second.component = 1;
+        const Volume channel = loadVolume(second);
+        CHECK(channel.dims() == Int3(3, 2, 2));
+        CHECK(channel.value(0) == 100);
+        CHECK(channel.value(11) == 305);
+        // Fewer than it says.
+        const std::string more = "ImageJ=1.53t\nimages=400\nslices=400\n";
+        const Volume cut = load(tiffFile(pages(3, more), {.pixelsTogether = true, .oneDirectory = true})).first;
+        CHECK(cut.dims().z == 1);
+        CHECK(hasNotice(cut, "says that it has 400 pictures, but it has 1"));
+    }
+    SECTION("not where they are packed") {
+        std::vector<TiffPage> packed = pages(1);
+        std::array<unsigned char, 64> room{};
+        uLongf count = room.size();
+        REQUIRE(compress(room.data(), &count, reinterpret_cast<const unsigned char*>(packed[0].pixels.data()),
+                         packed[0].pixels.size()) == Z_OK);
+        packed[0].pixels.assign(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(count));
+        packed[0].compression = 8;
+        const auto [volume, isInFile] = load(tiffFile(packed, {false, true}));
+        CHECK_FALSE(isInFile);
+        CHECK(volume.value(5) == 5);
+    }
+    SECTION("what a reader says of the place is held against the file") {
+        const std::string path = folder.write("a.tif", tiffFile(pages(4), {false, true}));
+        const auto say = [&](const std::string& start) {
+            folder.write("reader.sh",
+                         "#!/bin/sh\nread line; echo '{\"layout\":{\"axes\":[{\"size\":3,\"components\":false,\"time\":"
+                         "false},{\"size\":8,\"components\":false,\"time\":false}],\"type\":2,\"spacing\":[1,1,1],"
+                         "\"origin\":[0,0,0],\"directions\":[[1,0,0],[0,1,0],[0,0,1]],\"patient\":false,\"array\":\"\","
+                         "\"layers_at_once\":1,\"notices\":[],\"in_file\":{\"starts\":[" +
+                             start + "],\"big_endian\":false}}}'; sleep 100\n");
+        };
+        say("8");
+        CHECK(loadVolume(at(path)).value(23) == 305);  // nobody asks the reader for it
+        say(std::to_string(fs::file_size(path) - 47)); // of the 48 bytes
+        CHECK_THROWS_WITH(loadVolume(at(path)), Contains("the data has 47 of 48 bytes"));
+        say(std::to_string(fs::file_size(path) + 1));
+        CHECK_THROWS_WITH(loadVolume(at(path)), Contains("behind the end of the file"));
+        say("-1");
+        CHECK_THROWS_AS(loadVolume(at(path)), Error);
+    }
 }
 
 TEST_CASE("what is wrong with a TIFF file is told", "[images]") {

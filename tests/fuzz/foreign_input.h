@@ -42,8 +42,9 @@ inline void readLevel(const ForeignVolume& volume, const ReaderLayout& layout, i
 /// Describes it, and reads each of its levels.
 inline void readForeign(const ForeignVolume& volume) {
     bool isTold = false;
-    succeeds([&] { isTold = contentsIn(jsonOf(volume.contents())).steps >= 1; });
-    require(!volume.files().empty(), "a volume has a file");
+    const ReaderDescription description{volume.contents(), volume.files()};
+    succeeds([&] { isTold = descriptionIn(jsonOf(description)).contents.steps >= 1; });
+    require(!description.files.empty(), "a volume has a file");
     const ReaderLayout layout = volume.layout(0);
     ReaderLayout heard;
     succeeds([&] { heard = layoutIn(jsonOf(layout)); });

@@ -262,6 +262,7 @@ void addMessages(Seeds& seeds) {
     answer.layout.axes = {{3, true, false}, {4, false, false}, {5, false, false}, {6, false, false}, {2, false, true}};
     answer.layout.notices = {"a remark"};
     answer.missing = -1;
+    answer.inFile = {8, 4096};
     answer.levels = {{{2, 3, 3}, {2, 2, 2}, {2, 2, 2}, {0.5, 0.5, 0.5}}};
     FileContents contents;
     contents.dims = {4, 5, 6};
@@ -269,10 +270,9 @@ void addMessages(Seeds& seeds) {
     contents.arrays = contents.details = {"a", "b"};
     ReaderRequest request;
     request.path = "a.tif";
-    const nlohmann::json files{{"files", {"a.tif", "b.tif"}}};
     for (const nlohmann::json& message :
-         {jsonOf(answer), jsonOf(contents), jsonOf(request), jsonOf(ReaderBox{1, {Int3(0), Int3(2)}, 0}),
-          jsonOf(FileError("it is damaged", "a.tif", "copy it again")), files})
+         {jsonOf(answer), jsonOf(ReaderDescription{contents, {"a.tif", "b.tif"}}), jsonOf(request),
+          jsonOf(ReaderBox{1, {Int3(0), Int3(2)}, 0}), jsonOf(FileError("it is damaged", "a.tif", "copy it again"))})
         seeds.add("reader_messages", message.dump());
 }
 

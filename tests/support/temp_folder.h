@@ -32,6 +32,11 @@ public:
         std::ofstream(path(name), std::ios::binary) << bytes;
         return path(name);
     }
+    /// The bytes of a file.
+    std::string read(const std::string& name) const {
+        std::ifstream in(path(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
     std::size_t fileCount() const {
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(m_path), {}));
     }

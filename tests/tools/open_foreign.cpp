@@ -21,8 +21,8 @@ constexpr std::uint64_t kMostBytes = 64u << 20; ///< of voxels that are read: mo
 json open(const std::string& path) {
     const BeforeFile before = [](std::uint64_t) {};
     const auto volume = openForeign(path, {}, before);
-    const FileContents contents = contentsIn(json::parse(jsonOf(volume->contents()).dump()));
-    static_cast<void>(volume->files());
+    const json told = json::parse(jsonOf(ReaderDescription{volume->contents(), volume->files()}).dump());
+    const FileContents contents = descriptionIn(told).contents;
     const ReaderLayout layout = layoutIn(json::parse(jsonOf(volume->layout(0)).dump()));
     ReaderBox box;
     box.region = {Int3(0), dimsOf(layout, 0)};

@@ -52,10 +52,7 @@ VolumeSource sourceAt(const QString& path) {
 
 // What a file of another program has that is not drawn here, and what was made of its opacities.
 void noteForeign(Services& services, const ReadTf& read) {
-    const Scene& scene = services.scene();
-    // The published profile takes Voreen's files as the thesis did.
-    if (read.opensAsItIs && scene.session.measure->profile == Profile::Published) return;
-    for (const std::string& notice : openingNotices(read, scene.data->geometry()))
+    for (const std::string& notice : openingNoticesIn(services.scene(), read))
         services.notices().add({QString::fromStdString(notice)});
 }
 

@@ -1,7 +1,9 @@
 #include "foreign/images/image_stack.h"
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
+#include <fstream>
 
 #include "base/check.h"
 #include "base/text.h"
@@ -17,6 +19,14 @@ constexpr int kMostPages = 100'000;
 
 FileError failure(const std::string& path, const std::string& what) {
     return {what, path, "copy or write the file again"};
+}
+
+void readPlain(const std::string& path, const PlainPixels& plain, std::size_t width, std::span<std::byte> to) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(plain.start));
+    in.read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
+    if (!in) throw failure(path, "the file ends before its last picture");
+    if (width > 1 && plain.bigEndian != (std::endian::native == std::endian::big)) swapBytes(to, width);
 }
 
 } // namespace
@@ -45,15 +55,26 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
                 ++passedOver; // a thumbnail, or a coarser copy
                 continue;
             }
-            m_pages.push_back({f, page});
+            m_pages.push_back({f, page, isFolder ? std::nullopt : file->plainPixels()});
             if (isFolder) break; // one picture a file
         }
     }
     if (m_pages.empty()) throw failure(path, "there is no picture in it");
+    addPlainPages();
     if (passedOver > 0)
         m_notices.push_back(std::to_string(passedOver) + (passedOver == 1 ? " page" : " pages") +
                             " of another size or type passed over");
     putInOrder();
+}
+
+/// The pictures behind the first one, where ImageJ has written no directories of them.
+void ImageStack::addPlainPages() {
+    if (m_pages.size() != 1 || !m_pages.front().plain || m_order.images < 2) return;
+    const PlainPixels first = *m_pages.front().plain;
+    const std::uint64_t bytes = bytesOf(m_shape), there = bytesOfFile(m_files.front()) - first.start;
+    if (there / bytes < static_cast<std::uint64_t>(m_order.images)) return;
+    for (int n = 1; n < m_order.images; ++n)
+        m_pages.push_back({0, n, PlainPixels{first.start + static_cast<std::uint64_t>(n) * bytes, first.bigEndian}});
 }
 
 /// The numbers of slices, channels and steps, which have to be those of the pages.
@@ -95,7 +116,26 @@ ReaderLayout ImageStack::layout(int step) const {
     if (m_order.channels > 1) layout.axes.push_back({m_order.channels, true});
     layout.spacing = m_order.spacing;
     layout.notices = m_notices;
+    findPlain(step, answer);
     return answer;
+}
+
+/// Says where the pictures of a step stand in the file, where they need no library.
+void ImageStack::findPlain(int step, ReaderLayout& answer) const {
+    const std::optional<PlainPixels>& first = pageAt(0, 0, step).plain;
+    const std::uint64_t bytes = bytesOf(m_shape);
+    std::vector<std::uint64_t> starts;
+    bool areTogether = true;
+    for (int channel = 0; channel < m_order.channels; ++channel)
+        for (int slice = 0; slice < m_order.slices; ++slice) {
+            const std::optional<PlainPixels>& plain = pageAt(slice, channel, step).plain;
+            if (!plain || plain->bigEndian != first->bigEndian) return;
+            areTogether &= starts.empty() || plain->start == starts.back() + bytes;
+            starts.push_back(plain->start);
+        }
+    if (areTogether) starts.resize(1);
+    answer.inFile = std::move(starts);
+    answer.layout.bigEndian = first->bigEndian;
 }
 
 FileContents ImageStack::contents() const {
@@ -126,15 +166,14 @@ void ImageStack::read(int step, const ReaderBox& box, std::span<std::byte> voxel
             opened = page.file;
         }
         before(sliceBytes);
-        if (!file->goTo(page.page) || !(file->shape() == m_shape))
+        const std::span<std::byte> to = isWhole ? voxels.first(sliceBytes) : std::span(slice);
+        if (page.plain)
+            readPlain(m_files[page.file], *page.plain, bytesPerValue(m_shape.type), to);
+        else if (file->goTo(page.page) && file->shape() == m_shape)
+            file->read(to);
+        else
             throw failure(m_files[page.file], "the file has changed while it was read");
-        if (isWhole) {
-            file->read(voxels.first(sliceBytes));
-            voxels = voxels.subspan(sliceBytes);
-        } else {
-            file->read(slice);
-            voxels = copyFromSlice(slice, size, bytesPerVoxel, region, voxels);
-        }
+        voxels = isWhole ? voxels.subspan(sliceBytes) : copyFromSlice(slice, size, bytesPerVoxel, region, voxels);
         job.throwIfStopped();
         job.report(static_cast<double>(z + 1 - region.lo.z) / static_cast<double>(region.hi.z - region.lo.z));
     }

@@ -2,6 +2,7 @@
 // pellucid-image-reader only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,12 @@ private:
     struct Page {
         std::size_t file = 0;
         int page = 0;
+        std::optional<PlainPixels> plain = {}; ///< of TIFF files that are read alone
     };
     const Page& pageAt(int slice, int channel, int step) const;
+    void addPlainPages();
     void putInOrder();
+    void findPlain(int step, ReaderLayout& answer) const;
 
     OpenPictures m_open;
     std::string m_path;

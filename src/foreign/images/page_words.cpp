@@ -33,6 +33,7 @@ PageOrder orderOfImageJ(const std::string& description, double pixelsPerUnitX, d
     PageOrder order;
     order.software = "ImageJ";
     order.axes = "czt";
+    order.images = countIn(fields["images"], 0);
     order.channels = countIn(fields["channels"], 1);
     order.slices = countIn(fields["slices"], 0);
     order.steps = countIn(fields["frames"], 1);

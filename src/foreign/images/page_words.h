@@ -12,6 +12,7 @@ struct PageOrder {
     /// Pages vary fastest along the first letter: z (slices), c (channels), t (time steps).
     std::string axes = "z";
     int slices = 0, channels = 1, steps = 1; ///< slices 0: as many as there are pages left
+    int images = 0; ///< of ImageJ, which writes one directory alone for stacks of 4 GB and more; 0: it does not say
     Vec3 spacing{1, 1, 1};
     double stepSeconds = 0; ///< from step to step; 0: not known
     std::string software;   ///< "ImageJ", "OME"; empty: neither

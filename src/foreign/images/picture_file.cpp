@@ -127,6 +127,34 @@ public:
                 }
     }
 
+    std::optional<PlainPixels> plainPixels() override {
+        const PageShape page = shape();
+        const auto is = [&](ttag_t tag, std::uint16_t wanted, std::uint16_t otherwise) {
+            std::uint16_t value = otherwise;
+            TIFFGetFieldDefaulted(m_file, tag, &value);
+            return value == wanted;
+        };
+        if (TIFFIsTiled(m_file) != 0 || (isPlanar() && page.samples > 1) ||
+            !is(TIFFTAG_COMPRESSION, COMPRESSION_NONE, COMPRESSION_NONE) ||
+            !is(TIFFTAG_FILLORDER, FILLORDER_MSB2LSB, FILLORDER_MSB2LSB) ||
+            is(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_YCBCR, PHOTOMETRIC_MINISBLACK))
+            return {};
+        const auto height = static_cast<std::uint32_t>(page.height);
+        std::uint32_t rows = height;
+        TIFFGetFieldDefaulted(m_file, TIFFTAG_ROWSPERSTRIP, &rows);
+        rows = std::min(rows, height);
+        if (rows < 1 || TIFFNumberOfStrips(m_file) != (height - 1) / rows + 1) return {};
+        const std::uint64_t row = bytesOf(page) / height, start = TIFFGetStrileOffset(m_file, 0);
+        std::uint64_t next = start;
+        for (std::uint32_t y = 0, strip = 0; y < height; y += rows, ++strip) {
+            const std::uint64_t bytes = row * std::min(rows, height - y);
+            if (TIFFGetStrileOffset(m_file, strip) != next || TIFFGetStrileByteCount(m_file, strip) != bytes) return {};
+            next += bytes;
+        }
+        if (start == 0 || next < start || next > readableFileBytes(m_path)) return {}; // read() says what is wrong
+        return PlainPixels{start, TIFFIsBigEndian(m_file) != 0};
+    }
+
     std::string description() override {
         const char* text = nullptr;
         return TIFFGetField(m_file, TIFFTAG_IMAGEDESCRIPTION, &text) != 0 && text != nullptr ? text : "";

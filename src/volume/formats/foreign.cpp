@@ -92,11 +92,11 @@ std::optional<std::size_t> stateOf(const ReaderRequest& request) {
 
 /// What describeInProcess() says; the latest answers are kept as long as the files stay as they are. Opening asks
 /// several times what there is, and of a large study each answer takes seconds.
-FileContents described(const ReaderRequest& request, const JobControl& job) {
+ReaderDescription described(const ReaderRequest& request, const JobControl& job) {
     struct Known {
         std::string program, path, array;
         std::size_t state;
-        FileContents contents;
+        ReaderDescription description;
     };
     constexpr std::size_t kMost = 16;
     static std::mutex s_mutex;
@@ -108,20 +108,20 @@ FileContents described(const ReaderRequest& request, const JobControl& job) {
     {
         const std::lock_guard lock(s_mutex);
         const auto known = std::ranges::find_if(s_known, isSame);
-        if (known != s_known.end() && state && known->state == *state) return known->contents;
+        if (known != s_known.end() && state && known->state == *state) return known->description;
     }
-    FileContents contents = describeInProcess(request, job);
-    if (!state) return contents;
+    ReaderDescription description = describeInProcess(request, job);
+    if (!state) return description;
     const std::lock_guard lock(s_mutex);
     s_known.remove_if(isSame);
-    s_known.push_front({request.program, request.path, request.array, *state, contents});
+    s_known.push_front({request.program, request.path, request.array, *state, description});
     if (s_known.size() > kMost) s_known.pop_back();
-    return contents;
+    return description;
 }
 
 template <auto requestFor>
 FileContents describe(const VolumeSource& source, const JobControl& job) {
-    return described(requestFor(source), job);
+    return described(requestFor(source), job).contents;
 }
 template <auto requestFor>
 Volume read(const VolumeSource& source, const JobControl& job) {
@@ -131,7 +131,7 @@ template <auto requestFor>
 std::vector<std::string> dataFiles(const std::string& path) {
     VolumeSource source;
     source.path = path;
-    return listInProcess(requestFor(source), {});
+    return described(requestFor(source), {}).files;
 }
 
 /// Whether a TIFF file has a second page: a stack by itself. By its first directory (TIFF 6.0, section 2; BigTIFF has

@@ -60,15 +60,17 @@ json jsonOf(const ReaderRequest& request) {
 ReaderRequest requestIn(const json& message) {
     const JsonValue value = valueOf(message);
     ReaderRequest request;
-    request.task = static_cast<ReaderRequest::Task>(value["task"].whole(0, 2));
+    request.task = static_cast<ReaderRequest::Task>(value["task"].whole(0, 1));
     request.path = value["path"].text();
     request.array = value["array"].text();
     request.step = value["step"].whole(0, kMostWhole);
     return request;
 }
 
-json jsonOf(const FileContents& contents) {
-    return {{"contents",
+json jsonOf(const ReaderDescription& description) {
+    const FileContents& contents = description.contents;
+    return {{"files", description.files},
+            {"contents",
              {{"dims", wholesOf(contents.dims)},
               {"type", static_cast<int>(contents.type)},
               {"components", contents.components},
@@ -80,9 +82,11 @@ json jsonOf(const FileContents& contents) {
               {"details", contents.details}}}};
 }
 
-FileContents contentsIn(const json& message) {
+ReaderDescription descriptionIn(const json& message) {
+    ReaderDescription description;
+    for (const JsonValue& item : valueOf(message)["files"].items()) description.files.push_back(item.text());
     const JsonValue value = valueOf(message)["contents"];
-    FileContents contents;
+    FileContents& contents = description.contents;
     contents.dims = wholesIn(value["dims"], 1);
     contents.type = static_cast<SampleType>(value["type"].whole(0, static_cast<int>(SampleType::F64)));
     contents.components = value["components"].whole(1, kMostWhole);
@@ -92,7 +96,7 @@ FileContents contentsIn(const json& message) {
     contents.array = textIn(value["array"]);
     contents.arrays = textsIn(value["arrays"]);
     contents.details = textsIn(value["details"]);
-    return contents;
+    return description;
 }
 
 json jsonOf(const ReaderLayout& answer) {
@@ -117,6 +121,7 @@ json jsonOf(const ReaderLayout& answer) {
                                   {"origin", numbersOf(level.origin)}});
     if (layout.scaling) text["scaling"] = {{"slope", layout.scaling->slope}, {"intercept", layout.scaling->intercept}};
     if (answer.missing) text["missing"] = *answer.missing;
+    if (!answer.inFile.empty()) text["in_file"] = {{"starts", answer.inFile}, {"big_endian", layout.bigEndian}};
     return {{"layout", std::move(text)}};
 }
 
@@ -141,6 +146,12 @@ ReaderLayout layoutIn(const json& message) {
         layout.scaling = ValueScaling{value["scaling"]["slope"].number(), value["scaling"]["intercept"].number()};
     if (value.has("missing")) answer.missing = value["missing"].number();
     answer.layersAtOnce = value["layers_at_once"].whole(1, kMostWhole);
+    if (value.has("in_file")) {
+        for (const JsonValue& start : value["in_file"]["starts"].items())
+            answer.inFile.push_back(
+                static_cast<std::uint64_t>(start.integer(0, std::numeric_limits<std::int64_t>::max())));
+        layout.bigEndian = value["in_file"]["big_endian"].boolean();
+    }
     if (!value.has("levels")) return answer;
     for (const JsonValue& level : value["levels"].items()) {
         if (answer.levels.size() >= kMostLevels) value.fail("there are too many levels", "");
@@ -162,12 +173,6 @@ ReaderBox boxIn(const json& message) {
     return {value["level"].whole(0, kMostWhole),
             {wholesIn(value["lo"], 0), wholesIn(value["hi"], 1)},
             value["component"].whole(0, kMostWhole)};
-}
-
-std::vector<std::string> filesIn(const json& message) {
-    std::vector<std::string> files;
-    for (const JsonValue& item : valueOf(message)["files"].items()) files.push_back(item.text());
-    return files;
 }
 
 json jsonOf(const Error& error) {

@@ -15,8 +15,7 @@ namespace pellucid {
 /// What pellucid-reader is to do; the first line that it is told.
 struct ReaderRequest {
     enum class Task {
-        Describe, ///< answered by a FileContents
-        List,     ///< answered by the names of the files that hold the voxels
+        Describe, ///< answered by a ReaderDescription
         Read      ///< answered by a ReaderLayout; the voxels follow once it has been told to go on
     };
     std::string program; ///< that is asked: "pellucid-reader", "pellucid-tiff-reader", …
@@ -24,6 +23,12 @@ struct ReaderRequest {
     std::string path;  ///< a file or a folder
     std::string array; ///< the series, image or array that is wanted; empty: the largest
     int step = 0;      ///< the time step that is read
+};
+
+/// What it says there is.
+struct ReaderDescription {
+    FileContents contents;
+    std::vector<std::string> files; ///< that hold the voxels
 };
 
 /// A coarser copy of the voxels that the files have besides.
@@ -39,6 +44,9 @@ struct ReaderLayout {
     std::optional<double> missing;   ///< the value that stands for none, as the file says; scaled
     std::vector<ReaderLevel> levels; ///< from fine to coarse
     int layersAtOnce = 1;            ///< layers across z that are stored together
+    /// Where given: the values of the step stand in the file that was opened, in the order of layout.bigEndian, in
+    /// parts of one size that begin at these bytes. They can be read there, without the reader.
+    std::vector<std::uint64_t> inFile;
 };
 
 /// What it is to write next.
@@ -49,17 +57,16 @@ struct ReaderBox {
 };
 
 nlohmann::json jsonOf(const ReaderRequest& request);
-nlohmann::json jsonOf(const FileContents& contents);
+nlohmann::json jsonOf(const ReaderDescription& description);
 nlohmann::json jsonOf(const ReaderLayout& answer);
 nlohmann::json jsonOf(const ReaderBox& box);
 nlohmann::json jsonOf(const Error& error);
 
 /// Throw Error where `message` is not what was to come: the other end may be damaged, or in the hands of a file.
 ReaderRequest requestIn(const nlohmann::json& message);
-FileContents contentsIn(const nlohmann::json& message);
+ReaderDescription descriptionIn(const nlohmann::json& message);
 ReaderLayout layoutIn(const nlohmann::json& message);
 ReaderBox boxIn(const nlohmann::json& message);
-std::vector<std::string> filesIn(const nlohmann::json& message);
 [[noreturn]] void throwErrorIn(const nlohmann::json& message);
 
 /// Voxels along each axis of a level, 0 being the voxels themselves. Throws FileError where there is no such level.

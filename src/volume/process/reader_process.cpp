@@ -269,16 +269,10 @@ ReaderRequest withTask(ReaderRequest request, ReaderRequest::Task task) {
 
 void setReaderProgram(const fs::path& program) { chosenProgram() = program; }
 
-FileContents describeInProcess(const ReaderRequest& request, const JobControl& job) {
+ReaderDescription describeInProcess(const ReaderRequest& request, const JobControl& job) {
     Reader reader(request, job);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::Describe)).dump());
-    return contentsIn(reader.hear(job));
-}
-
-std::vector<std::string> listInProcess(const ReaderRequest& request, const JobControl& job) {
-    Reader reader(request, job);
-    reader.say(jsonOf(withTask(request, ReaderRequest::Task::List)).dump());
-    return filesIn(reader.hear(job));
+    return descriptionIn(reader.hear(job));
 }
 
 namespace {
@@ -411,6 +405,25 @@ void placeLevel(FileLayout& layout, const ReaderLayout& answer, const LevelPlan&
     layout.plan = taken.plan;
 }
 
+/// Values that need no library to be read. The reader may be wrong, or in the hands of the file, but of this file
+/// alone.
+void placeInFile(FileLayout& layout, const std::vector<std::uint64_t>& starts) {
+    const std::string& path = layout.dataPath;
+    const std::uint64_t there = readableFileBytes(path), values = valuesIn(layout, path);
+    if (values % starts.size() != 0) throw FileError("the voxels do not fill the parts of the file", path, kCopyAgain);
+    for (const std::uint64_t start : starts) {
+        if (start > there) throw FileError("some voxels lie behind the end of the file", path, kCopyAgain);
+        requireStored(path, Encoding::Raw, values / starts.size(), bytesPerValue(layout.type), there - start,
+                      kCopyAgain);
+        StoredValues part = layout;
+        part.start = start;
+        layout.parts.push_back(std::move(part));
+    }
+    if (layout.parts.size() > 1) return;
+    layout.start = starts.front();
+    layout.parts.clear();
+}
+
 Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool middleOnly, const JobControl& job) {
     Reader reader(request, job);
     reader.say(jsonOf(withTask(request, ReaderRequest::Task::Read)).dump());
@@ -424,6 +437,10 @@ Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool m
     const FileContents contents = contentsOf(layout);
     const Int3 dims = contents.dims;
     if (middleOnly) taken.region = VoxelRegion{{0, 0, dims.z / 2}, {dims.x, dims.y, dims.z / 2 + 1}};
+    if (!answer.inFile.empty()) {
+        placeInFile(layout, answer.inFile);
+        return readSamples(taken, layout, job);
+    }
     const ExcerptPlan plan = planFor(taken, answer);
     const ReaderBox all{0, {Int3(0), dims}, 0};
     const std::uint64_t bytes = bytesOf(all, answer, source.path);

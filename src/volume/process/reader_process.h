@@ -20,8 +20,7 @@ public:
 
 /// All throw FileError or UsageError as the reader says it, or FileError where it crashes, falls silent or cannot be
 /// started; Cancelled, and the process has been ended then.
-FileContents describeInProcess(const ReaderRequest& request, const JobControl& job);
-std::vector<std::string> listInProcess(const ReaderRequest& request, const JobControl& job);
+ReaderDescription describeInProcess(const ReaderRequest& request, const JobControl& job);
 /// The volume that the reader has read, as readSamples() makes it of `source`.
 Volume readInProcess(const VolumeSource& source, const ReaderRequest& request, const JobControl& job);
 
