@@ -317,15 +317,14 @@ std::string indexOf(std::span<const Reproduction> items) {
     std::string text =
         "# Figures and tables of the thesis, by one command\n\n"
         "    pellucid-cli reproduce --out DIR --data FOLDER\n\n"
-        "does them again and writes DIR/index.html: pictures, our numbers beside the thesis's, whether what its text "
-        "says\nholds. `reproduce 3.4 4.5 --out DIR` does some of them, `reproduce --list` names all. FOLDER has the "
-        "real "
-        "volumes; what is\nnot there is replaced by a sample, as said at each item.\n\n"
-        "This page is made by `pellucid-cli reproduce --out DIR --data FOLDER --index docs/reproduce.md`. Printed "
-        "numbers "
-        "of the\nthesis cannot be met digit by digit by Pellucid's own definitions: its slices, colours and transfer "
-        "functions differ\n([decisions/0004](decisions/0004-extinction-not-slices.md)). By the published profile they "
-        "can, where their data exist.\n\n## Equations\n\n" +
+        "reproduces them and writes DIR/index.html: the pictures, Pellucid's numbers beside those of the thesis, and "
+        "whether the\nstatements of its text hold. `reproduce 3.4 4.5 --out DIR` reproduces only some of them, and "
+        "`reproduce --list` lists all.\nFOLDER contains the real volumes. If one is missing, a sample replaces it, and "
+        "the item says so.\n\n"
+        "`pellucid-cli reproduce --out DIR --data FOLDER --index docs/reproduce.md` writes this page. Pellucid's own "
+        "definitions\ncannot match the printed numbers of the thesis digit by digit, because its slices, colours and "
+        "transfer functions differ\n([decisions/0004](decisions/0004-extinction-not-slices.md)). The published profile "
+        "can, where the data of the thesis exist.\n\n## Equations\n\n" +
         markdownEquations(items) + "\n";
     for (const Reproduction& item : items) text += markdownItem(item);
     while (text.ends_with("\n\n")) text.pop_back();

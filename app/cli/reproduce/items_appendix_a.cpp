@@ -50,8 +50,7 @@ void showMaps(Desk& desk) {
 }
 
 ReproducedTable figuresOf(const std::vector<FeatureFigures>& features) {
-    ReproducedTable table{
-        "2D feature saliency, beside VWS and visibility", {"feature", "2DFS", "VWS", "visibility"}, {}};
+    ReproducedTable table{"2D feature saliency, with VWS and visibility", {"feature", "2DFS", "VWS", "visibility"}, {}};
     for (const FeatureFigures& f : features)
         table.rows.push_back({f.name, figureText(f.fs), figureText(f.vws), figureText(f.visibility)});
     return table;
@@ -90,14 +89,13 @@ void shareSaliency(Desk& desk) {
 } // namespace
 
 std::vector<Item> itemsOfAppendixA() {
-    return {
-        {{"A.1", "A.2", "A.3", "A.4", "A.5"},
-         "2D feature saliency, step by step",
-         "an engine block with a red and a green feature: each alone, the saliency map, what each feature has of it, "
-         "the rest, its Gaussians, and the 2D feature saliency.",
-         {{"A", "src/saliency/image_saliency.cpp"}},
-         {kEngine},
-         shareSaliency}};
+    return {{{"A.1", "A.2", "A.3", "A.4", "A.5"},
+             "2D feature saliency, step by step",
+             "an engine block with a red and a green feature: each alone, the saliency map, the part of it that each "
+             "feature has, the residual, its Gaussians, and the 2D feature saliency.",
+             {{"A", "src/saliency/image_saliency.cpp"}},
+             {kEngine},
+             shareSaliency}};
 }
 
 } // namespace pellucid::cli

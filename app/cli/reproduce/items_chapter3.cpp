@@ -48,7 +48,7 @@ Tissues tissuesOf(Desk& desk, const Source& knee, const std::string& before, con
 }
 
 ReproducedTable tableOf(const Tissues& tissues) {
-    ReproducedTable table{"Shares of what is seen, and how opaque each tissue is where it lies in the way",
+    ReproducedTable table{"Visibility of each tissue, and how much it covers of what lies behind it",
                           {"tissue", "visibility before", "after", "cover before", "after"},
                           {}};
     for (std::size_t i = 0; i < tissues.before.size(); ++i) {
@@ -66,7 +66,7 @@ void sayWhatIsExposed(Desk& desk, const Tissues& tissues) {
     const auto& [before, after] = tissues;
     const double fleshBefore = before[0].cover + before[1].cover, fleshAfter = after[0].cover + after[1].cover;
     desk.statement("3.5.1", "After optimization the surrounding tissues become translucent.", fleshAfter < fleshBefore,
-                   "cover of skin, fat and muscle in sum " + fromTo(fleshBefore, fleshAfter));
+                   "total cover of skin, fat and muscle " + fromTo(fleshBefore, fleshAfter));
     desk.statement("3.5.1", "Hence the skeleton is exposed and the knee joint is visible.",
                    after[2].visibility > before[2].visibility,
                    "visibility of the bones " + fromTo(before[2].visibility, after[2].visibility));
@@ -147,10 +147,11 @@ void timeSearches(Desk& desk) {
         desk.number(of + ", 500 iterations", faster, row.thesis500, "s");
         desk.number(of + ", 1000 iterations", longer, row.thesis1000, "s");
         desk.statement("3.4.2", "The tests all finished within 0.01 seconds (" + of + ").", longer < 0.01,
-                       longer < 0.01 ? "so do they here" : "1000 iterations take longer here");
+                       longer < 0.01 ? "so do these" : "1000 iterations take longer here");
     }
-    desk.remark("What is timed is the search, for an intensity chosen on the palette; the histogram is there. It does "
-                "not depend on the size of the volume, so that samples and data in place of the thesis's compare.");
+    desk.remark("The times are those of the search for an intensity chosen on the palette, with the histogram ready. "
+                "They do not depend on the size of the volume, so times on samples and substitute data can be compared "
+                "with those of the thesis.");
 }
 
 /// Hues that the palette of ramp:6 gives to tissues of the sample, and their names.
@@ -188,8 +189,8 @@ void choosePalette(Desk& desk) {
                        after > before,
                        "opacity there as a multiple of the mean " + fixedText(before, 2) + " → " + fixedText(after, 2));
     }
-    desk.remark("The thesis chooses red, green and magenta of its palette. In the sample red is air; the colours here "
-                "are those of skin and fat, of spongy and of dense bone.");
+    desk.remark("The thesis chooses red, green and magenta on its palette. In the sample, red is air, so the colours "
+                "here are those of skin and fat, of spongy bone and of dense bone.");
 }
 
 // --- A region under a clipping plane ---
@@ -236,7 +237,7 @@ void refineRegion(Desk& desk) {
     desk.statement("3.5.3", "However, the intermediate material (the bone) also becomes less clear.",
                    of(1, cut.wanted).opacity < of(0, cut.wanted).opacity,
                    "opacity of the bone " + fromTo(of(0, cut.wanted).opacity, of(1, cut.wanted).opacity),
-                   "In this head bone is rare, and refinement by entropy takes opacity from what is common only.");
+                   "Bone is rare in this head, and entropy refinement reduces only the opacity of common values.");
     desk.statement("3.5.3", "The bone becomes more clear after the region-based optimization.",
                    of(2, cut.wanted).visibility > of(1, cut.wanted).visibility,
                    "visibility of the bone " + fromTo(of(1, cut.wanted).visibility, of(2, cut.wanted).visibility));

@@ -161,7 +161,7 @@ void vwsFieldsOfDisks(Desk& desk) {
                         disks.words + Words{"--tf", tf, "--view", view, "--field", "vws", "--feature", disk});
         }
     desk.remark(
-        "In all pictures of the field a colour is the same value: a disk that is hidden by another one is dark.");
+        "All pictures of the field use the same colour scale, so a disk that is hidden by another one is dark.");
 }
 
 /// The captions of figures 4.5 and 4.6.
@@ -198,7 +198,7 @@ void sayHowFarSaturationLeads(Desk& desk, const std::vector<FeatureFigures>& fea
     const double next = std::max(features[0].saturation, features[2].saturation);
     desk.remark("From the " + side + " the middle disk leads in saturation by a factor of " +
                 fixedText(features[1].saturation / next, 2) +
-                "; how far depends on the two greens, which the thesis does not give in numbers.");
+                "; the factor depends on the two greens, which the thesis does not give in numbers.");
 }
 
 void barsOfDisks(Desk& desk) {
@@ -220,12 +220,11 @@ void barsOfDisks(Desk& desk) {
     }
     const auto oblique =
         featuresOf(desk.ask("oblique", Words{"measure"} + disks.words + Words{"--tf", tf, "--view", kFromRight}));
-    desk.remark(
-        "Both look along the row of disks. From the right and 20° above, where the front disk hides less of the "
-        "others, " +
-        oblique[leaderOf(oblique, &FeatureFigures::visibility)].name + " leads in visibility, " +
-        oblique[leaderOf(oblique, &FeatureFigures::brightness)].name + " in brightness, " +
-        oblique[leaderOf(oblique, &FeatureFigures::saturation)].name + " in saturation.");
+    desk.remark("Both views look along the row of disks. From the right and 20° above, where the front disk hides less "
+                "of the others, the " +
+                oblique[leaderOf(oblique, &FeatureFigures::visibility)].name + " leads in visibility, the " +
+                oblique[leaderOf(oblique, &FeatureFigures::brightness)].name + " in brightness, the " +
+                oblique[leaderOf(oblique, &FeatureFigures::saturation)].name + " in saturation.");
 }
 
 // --- A tooth ---
@@ -299,8 +298,8 @@ void compareTfs(Desk& desk) {
                    enamel[2].visibility > equal[2].visibility && enamel[2].vws > equal[2].vws,
                    "visibility " + figureText(equal[2].visibility) + " → " + figureText(enamel[2].visibility));
     if (!tooth.isReal)
-        desk.remark("Here the three features are the disks of a sample, and what is called enamel is the last of them; "
-                    "--data has the tooth itself.");
+        desk.remark("Here the three features are the disks of a sample, and the last of them stands for the enamel; "
+                    "--data gives access to the tooth itself.");
 }
 
 /// The same lightness and hue, a part of the chroma.

@@ -77,7 +77,7 @@ private:
 
 /// §5.3.2 of the figure of three fields.
 void sayHowVwsFollows(Desk& desk, const SampledSpace& space) {
-    ReproducedTable table{"How far VWS goes up and down along one opacity, on average over the other two",
+    ReproducedTable table{"How much VWS rises and falls along one opacity, averaged over the other two",
                           {"VWS of", "along f1", "along f2", "along f3", "others / own"},
                           {}};
     std::array<double, 3> influence{};
@@ -100,8 +100,8 @@ void sayHowVwsFollows(Desk& desk, const SampledSpace& space) {
         "over all " + std::to_string(space.size()) + " samples the deepest fall in a step is " + joined(falls));
     desk.statement("5.3.2", "That of feature 1, the exterior, is almost not influenced by the opacity of others.",
                    influence[0] < 0.1, "the others' influence is " + figureText(influence[0]) + " of its own",
-                   "The VWS here are shares of a whole: where another feature's rises, that of the exterior falls, "
-                   "though nothing covers it.");
+                   "VWS values are shares of a whole, so that of the exterior falls when that of another feature "
+                   "rises, although nothing covers the exterior.");
     desk.statement("5.3.2", "That of feature 2 is influenced by feature 1 and itself.",
                    space.meanRange(1, 0) > 0.1 && space.meanRange(1, 1) > 0.1 &&
                        space.meanRange(1, 2) < std::min(space.meanRange(1, 0), space.meanRange(1, 1)),
@@ -109,7 +109,7 @@ void sayHowVwsFollows(Desk& desk, const SampledSpace& space) {
                        ", along f3 " + figureText(space.meanRange(1, 2)));
     desk.statement("5.3.2", "Feature 3, an interior structure, is influenced by the others most.",
                    influence[2] > influence[1] && influence[1] > influence[0],
-                   "the others' influence by that of their own opacity: " +
+                   "the others' influence divided by that of their own opacity: " +
                        figuresText({influence.begin(), influence.end()}));
 }
 
@@ -208,7 +208,7 @@ void compareDirections(Desk& desk, CaseAtDesk& of, const std::string& figure) {
 
 /// What becomes of each direction where steps are long: the last F, not the best one.
 void sayWhatLongStepsDo(Desk& desk, std::vector<CaseAtDesk>& cases) {
-    ReproducedTable table{"The last F of a fixed step of some length, not the best one, after 150 moves at most",
+    ReproducedTable table{"The last F, not the best one, with fixed steps of two lengths, after at most 150 moves",
                           {"volume", "step", "gradient (method 1)", "backward", "second (method 2)"},
                           {}};
     std::array<int, 3> small{}, large{};
@@ -232,14 +232,14 @@ void sayWhatLongStepsDo(Desk& desk, std::vector<CaseAtDesk>& cases) {
         for (std::size_t d = 0; d < 3; ++d) texts.push_back(std::string(kDirections[d]) + " " + std::to_string(of[d]));
         return joined(texts);
     };
-    const std::string of = " of " + std::to_string(volumes) + " volumes: ";
+    const std::string of = " (of " + std::to_string(volumes) + "): ";
     desk.statement("5.3.4", "All the methods work with small step sizes.",
                    std::ranges::all_of(small, [&](int n) { return n == volumes; }),
-                   "steps of 0.02 end on target within 150 moves on so many" + of + counts(small));
+                   "volumes on which steps of 0.02 end on target within 150 moves" + of + counts(small));
     desk.statement("5.3.4",
                    "As the step size increases the backward difference of W becomes unstable, the other two not.",
                    large[1] < volumes && large[0] == volumes && large[2] == volumes,
-                   "steps of 0.2 end on target on so many" + of + counts(large));
+                   "volumes on which steps of 0.2 end on target" + of + counts(large));
 }
 
 void directions(Desk& desk) {
@@ -249,9 +249,9 @@ void directions(Desk& desk) {
     compareDirections(desk, cases[1], "5.4 (b)");
     tellDirections(desk, cases);
     sayWhatLongStepsDo(desk, cases);
-    desk.remark(
-        "The thesis names neither starts nor steps here. These are its starts of table 5.1, or ours; the drawings "
-        "have steps of 0.02, since longer ones of normalized directions go to and fro about the goal.");
+    desk.remark("The thesis gives neither the starts nor the step sizes here. The starts are those of its table 5.1, "
+                "or Pellucid's own. The plots use steps of 0.02, because longer steps along normalized directions "
+                "oscillate around the goal.");
 }
 
 // ---- Line search and parallel line search -------------------------------------------------------------------------
@@ -278,7 +278,7 @@ void twoSearches(Desk& desk) {
                        overlap > 0.5,
                        "F differs by less than 0.02 after " + fixedText(100 * overlap, 0) + " % of the moves, " +
                            std::to_string(line.moves) + " and " + std::to_string(parallel.moves) +
-                           (largestDifference(line, parallel) < 1e-9 ? "; they make the very same" : ""));
+                           (largestDifference(line, parallel) < 1e-9 ? "; they make the same moves" : ""));
     }
 }
 
@@ -327,7 +327,7 @@ void sayWhatIsEmphasized(Desk& desk, const std::string& sentence, const std::vec
         told.push_back("VWS of " + after[f].name + " " + fromTo(before[f].vws, after[f].vws));
         if (!rises)
             desk.remark(after[f].name + " has a VWS of " + figureText(before[f].vws) +
-                        " before, more than its target, so that meeting the targets takes from it.");
+                        " before the optimization, more than its target, so meeting the targets reduces it.");
     }
     desk.statement("5.4", sentence, holds, joined(told));
 }
@@ -358,12 +358,12 @@ void beforeAndAfter(Desk& desk, std::size_t number, const Letters& letters, cons
     for (const FeatureFigures& f : now) covers.push_back(f.cover);
     desk.statement("5.4", "After optimization all the 3 features are visible.",
                    std::ranges::all_of(covers, [](double cover) { return cover >= 0.02; }),
-                   "they cover so much of what lies behind them: " + figuresText(covers));
+                   "share that each covers of what lies behind it: " + figuresText(covers));
     sayWhatIsEmphasized(desk, emphasis, emphasized, before, now);
     sayWhatIsImperceptible(desk, of, after);
     if (!of.isTheThesiss())
         desk.remark(
-            "The start is one of ours: tents of equal width in the thesis's colours, with the peaks of table 5.1 "
+            "The start is Pellucid's own: tents of equal width in the thesis's colours, with the peaks of table 5.1 "
             "(the vortex: equal peaks).");
 }
 
@@ -422,8 +422,8 @@ void table51(Desk& desk) {
                    parallelSeconds < 0.8 * lineSeconds,
                    "all searches together take " + figureText(lineSeconds) + " s and " + figureText(parallelSeconds) +
                        " s",
-                   "Here both searches use all threads in every evaluation, so the parallel one has less to gain.");
-    desk.remark("Times are those of the search; saliency, which does not change, is made once before it.");
+                   "Here both searches use all threads in every evaluation, so the parallel search gains less.");
+    desk.remark("Times are those of the search. Saliency does not change and is computed once beforehand.");
     if (!anyExact)
         desk.remark(
             "Without the thesis's data and starts (--data) the steps of its table cannot be met, only their order.");
@@ -507,8 +507,7 @@ std::vector<Item> itemsOfChapter5() {
          {kObjective},
          all,
          twoSearches},
-        optimized(0, "The nucleon, optimized",
-                  "three features from the outside to the inside from weak to strong; the targets are met.",
+        optimized(0, "The nucleon, optimized", "three features, weak outside and strong inside; the targets are met.",
                   {"", "", "", "(a)", "(b)", "(c), (d)", "(e), (g)", "(f), (h)"},
                   "The green feature inside is particularly emphasized.", {2}),
         optimized(1, "The tooth, optimized", "the tooth before and after optimization to 0.1, 0.3, 0.6.",

@@ -56,9 +56,11 @@ Together togetherOf(const Image& picture, const Image& saturating, const Image& 
 void sayColours(Desk& desk, const std::string& saturated, const std::string& darkened, const Together& together) {
     const std::string over = " over " + std::to_string(together.pixels) + " pixels";
     desk.statement("6.4", saturated, together.saturation > 0.2,
-                   "saturation and volatility go together by Spearman's " + fixedText(together.saturation, 2) + over);
+                   "Spearman's correlation of saturation and volatility is " + fixedText(together.saturation, 2) +
+                       over);
     desk.statement("6.4", darkened, together.brightness < -0.2,
-                   "brightness and the second variable by " + fixedText(together.brightness, 2) + over);
+                   "Spearman's correlation of brightness and the second variable is " +
+                       fixedText(together.brightness, 2) + over);
 }
 
 // ---- The hurricane ------------------------------------------------------------------------------------------------
@@ -93,7 +95,7 @@ void hurricaneInGrey(Desk& desk) {
     desk.table({"How much of the picture each volatility covers (mean alpha)",
                 {"frames", "covers"},
                 {{"5", figureText(covers[0])}, {"10", figureText(covers[1])}, {"20", figureText(covers[2])}}});
-    desk.remark("The text compares nothing here; the longer the window, the longer the trail that the eye leaves.");
+    desk.remark("The thesis compares nothing here. The longer the window, the longer the trail that the eye leaves.");
 }
 
 /// Figures 6.3 and 6.4.
@@ -121,7 +123,7 @@ void hurricaneInColour(Desk& desk) {
     const Together trail = togetherOf(picture, before, rain);
     desk.statement("6.4", "The strong red indicates where the hurricane was in previous several frames.",
                    trail.saturation > 0.2,
-                   "saturation at frame 40 and the cloud of frame 35 go together by Spearman's " +
+                   "Spearman's correlation of saturation at frame 40 and the cloud of frame 35 is " +
                        fixedText(trail.saturation, 2) + " over " + std::to_string(trail.pixels) + " pixels");
     sayColours(desk, "Saturation shows the volatility of the cloud.",
                "The clouds with more precipitation are darker in the images.", together);
@@ -130,7 +132,7 @@ void hurricaneInColour(Desk& desk) {
     const Together dark = togetherOf(cyan, rain, rain);
     desk.statement("6.4", "In cyan, parts of the hurricane are darkened based on the precipitation.",
                    dark.brightness < -0.2,
-                   "brightness and precipitation go together by Spearman's " + fixedText(dark.brightness, 2));
+                   "Spearman's correlation of brightness and precipitation is " + fixedText(dark.brightness, 2));
 }
 
 void hurricaneSwapped(Desk& desk) {
@@ -167,7 +169,7 @@ void smoke(Desk& desk) {
                "Parts of the smoke are darkened based on the gradient magnitude.",
                togetherOf(guide(desk, "red", words + red), guide(desk, "volatile", words + greyOf("v")),
                           guide(desk, "steep", words + greyOf("g"))));
-    desk.remark("Frame 100 of the sample in place of frame 160; density is normalized over frames 90 to 103.");
+    desk.remark("Frame 100 of the sample stands in for frame 160. Density is normalized over frames 90 to 103.");
 }
 
 } // namespace
@@ -187,7 +189,7 @@ std::vector<Item> itemsOfChapter6() {
              hurricaneInColour},
             {{"6.5"},
              "The variables swapped",
-             "precipitation drives opacity and its volatility saturation, the cloud darkens.",
+             "precipitation as opacity, its volatility as saturation, and the cloud as darkness.",
              {kMapping},
              {kHurricane},
              hurricaneSwapped},

@@ -111,19 +111,17 @@ void overTime(Desk& desk) {
                    changeOf(stillFs) > changeOf(followingFs),
                    "from frame to frame " + figureText(changeOf(stillFs)) + " static, " +
                        figureText(changeOf(followingFs)) + " dynamic");
-    desk.statement(
-        "5.4.1", "The three 2DFS curves cross each other more often with the static one.",
-        crossingsOf(stillFs) > crossingsOf(followingFs),
-        std::to_string(crossingsOf(stillFs)) + " crossings static, " + std::to_string(crossingsOf(followingFs)) +
-            " dynamic",
-        "In the sample the features keep their order in almost every frame, so that there is little to cross.");
+    desk.statement("5.4.1", "The three 2DFS curves cross each other more often with the static one.",
+                   crossingsOf(stillFs) > crossingsOf(followingFs),
+                   std::to_string(crossingsOf(stillFs)) + " crossings static, " +
+                       std::to_string(crossingsOf(followingFs)) + " dynamic",
+                   "In the sample the features keep their order in almost every frame, so the curves hardly cross.");
     desk.statement("5.4.1", "The dynamic one maintains a similar level of visual saliency for the purple feature.",
                    rangeOf(following, 0) < rangeOf(still, 0),
-                   "its VWS goes up and down by " + figureText(rangeOf(still, 0)) + " static, by " +
+                   "its VWS varies by " + figureText(rangeOf(still, 0)) + " static, by " +
                        figureText(rangeOf(following, 0)) + " dynamic");
-    desk.remark(
-        "Every fifth time step. In the thesis's sentence on crossings both sides name figure 5.12 (b); it is read "
-        "as the static curves crossing more often than the dynamic ones.");
+    desk.remark("Every fifth time step is shown. The thesis's sentence on crossings names figure 5.12 (b) on both "
+                "sides; it is taken to mean that the static curves cross more often than the dynamic ones.");
 }
 
 // ---- Two starts ---------------------------------------------------------------------------------------------------
@@ -203,17 +201,16 @@ void twoStarts(Desk& desk) {
         desk.statement("5.4.2",
                        "The final volume rendered images are very similar in appearance (" + names[t] + " targets).",
                        alike.ssim > 0.95, textOf(alike));
-        desk.statement(
-            "5.4.2", "The optimized transfer functions are slightly different (" + names[t] + " targets).",
-            apart > 0 && apart < 0.1, "no opacity by more than " + figureText(apart),
-            apart == 0 ? "Newton's method, the default here, ends at the very same opacities from both starts." : "");
+        desk.statement("5.4.2", "The optimized transfer functions are slightly different (" + names[t] + " targets).",
+                       apart > 0 && apart < 0.1, "no opacity differs by more than " + figureText(apart),
+                       apart == 0 ? "Newton's method, the default here, ends at the same opacities from both starts."
+                                  : "");
         desk.statement("5.4.2", "From either start the VWS come as near to the targets (" + names[t] + ").",
                        std::abs(answers[0][t].objective - answers[1][t].objective) < 0.005,
                        "F " + figureText(answers[0][t].objective) + " and " + figureText(answers[1][t].objective));
     }
-    desk.remark(
-        "By the default method, Newton's; where exact shares would leave a feature unseen, the nearest ones that "
-        "do not are taken, which holds F above 0 for the rising targets.");
+    desk.remark("The searches use the default, Newton's method. Where exact shares would leave a feature unseen, it "
+                "takes the nearest shares that do not, so F stays above 0 for the rising targets.");
 }
 
 // ---- Three to nine tents ------------------------------------------------------------------------------------------
@@ -278,7 +275,7 @@ std::vector<Item> itemsOfSection5_4() {
          twoStarts},
         {{"section-5.4.2"},
          "Three to nine tents",
-         "in words alone: as with five features, the answer hardly depends on the start.",
+         "no figure here; its text says that, as with five features, the result hardly depends on the start.",
          {kObjective},
          {kKnee},
          manyTents}};
