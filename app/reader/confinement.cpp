@@ -142,6 +142,9 @@ void confineTo(const std::string& folder) {
     prctl(PR_SET_DUMPABLE, 0);
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     mallopt(M_ARENA_MAX, 1); // each further one reserves what limitMemory() counts
+    // What one picture has needed, the next one needs: to give it back and get it anew takes longer than to unpack it.
+    mallopt(M_TRIM_THRESHOLD, 64 << 20);
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
     baseBytes() = inUse();
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, 64);

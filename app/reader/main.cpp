@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iostream>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -35,10 +36,9 @@ public:
     Voxels(const Voxels&) = delete;
     Voxels& operator=(const Voxels&) = delete;
     std::span<std::byte> bytes() const { return {static_cast<std::byte*>(m_at), m_bytes}; }
-    /// So much of them has been written, from the beginning on.
-    void advance(double done) {
+    /// So many have been written, from the beginning on.
+    void advance(std::size_t written) {
         constexpr std::size_t kAhead = std::size_t{4} << 20;
-        const auto written = static_cast<std::size_t>(std::clamp(done, 0.0, 1.0) * static_cast<double>(m_bytes));
         if (written + kAhead / 2 < m_ready || m_ready == m_bytes) return;
         const std::size_t next = std::min(m_bytes, (written + 2 * kAhead) / kAhead * kAhead);
         // An older kernel does not know it: then pages come one by one.
@@ -51,10 +51,11 @@ private:
     std::size_t m_bytes, m_ready = 0;
 };
 
-JobControl progressTeller(Voxels& voxels) {
+/// Of a box of so many bytes.
+JobControl progressTeller(Voxels& voxels, std::uint64_t bytes) {
     voxels.advance(0);
-    return {{}, [&voxels, last = -1.0](double done) mutable {
-                voxels.advance(done);
+    return {{}, [&voxels, bytes, last = -1.0](double done) mutable {
+                voxels.advance(static_cast<std::size_t>(std::clamp(done, 0.0, 1.0) * static_cast<double>(bytes)));
                 if (done < last + 0.01) return;
                 last = done;
                 say({{"progress", done}});
@@ -87,13 +88,14 @@ void answer(const ReaderRequest& request) {
     const ReaderLayout layout = volume->layout(request.step);
     say(jsonOf(layout));
     limits.setImage(volume->largestImageBytes());
+    std::optional<Voxels> room;
     for (std::string line; std::getline(std::cin, line);) { // until nobody wants more
         const ReaderBox box = boxIn(nlohmann::json::parse(line, nullptr, false));
         const std::uint64_t bytes = bytesOf(box, layout, request.path);
         limits.setVoxels(bytes);
         before(0);
-        Voxels voxels(bytes);
-        volume->read(request.step, box, voxels.bytes(), before, progressTeller(voxels));
+        if (!room || room->bytes().size() < bytes) room.emplace(bytes); // the first is the largest
+        volume->read(request.step, box, room->bytes().first(bytes), before, progressTeller(*room, bytes));
         say({{"done", true}});
     }
 }

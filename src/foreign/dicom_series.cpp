@@ -258,6 +258,12 @@ ReaderLayout DicomSeries::layout(int step) const {
     layout.array = m_name;
     layout.notices = m_notices;
     layout.notices.insert(layout.notices.end(), m_stack.notices.begin(), m_stack.notices.end());
+    // A file is unpacked as a whole; where layers lie between pictures, those at the ends are read once more.
+    const auto isBetween = [](const DicomLayer& layer) { return layer.toAfter > 0; };
+    if (std::ranges::any_of(m_stack.steps.at(static_cast<std::size_t>(step)), isBetween))
+        answer.layersAtOnce = std::min(32, g.dims.z);
+    for (const DicomFrame& frame : m_frames)
+        answer.layersAtOnce = std::max(answer.layersAtOnce, std::min(frame.framesInFile, g.dims.z));
     const DicomFrame& first = m_frames.front();
     const bool isSame = std::ranges::all_of(m_frames, [&](const DicomFrame& frame) {
         return frame.padding == first.padding && frame.slope == first.slope && frame.intercept == first.intercept;

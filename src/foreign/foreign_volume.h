@@ -19,6 +19,12 @@ namespace pellucid {
 /// Called before a file of so many bytes is looked at.
 using BeforeFile = std::function<void(std::uint64_t bytes)>;
 
+/// Values that stand in a file as read() gives them, without gaps, but for the order of their bytes.
+struct PlainValues {
+    std::uint64_t start = 0; ///< bytes of the file
+    bool bigEndian = false;
+};
+
 class ForeignVolume {
 public:
     virtual ~ForeignVolume() = default;

@@ -6,6 +6,7 @@
 
 #include "support/array_writer.h"
 #include "support/notices.h"
+#include "support/reader_log.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
@@ -98,6 +99,78 @@ TEST_CASE("numbers of HDF5 files keep their type, in both byte orders", "[arrays
     check(float{}, H5T_IEEE_F32BE, SampleType::F32);
     check(double{}, H5T_IEEE_F64LE, SampleType::F64);
     check(double{}, H5T_IEEE_F64BE, SampleType::F64);
+}
+
+TEST_CASE("values in one piece are read from the file itself, without the library", "[arrays]") {
+    const TempFolder folder;
+    const ReaderLog log(folder, "pellucid-array-reader");
+    // The volume, and whether the reader has said where its values are.
+    const auto load = [&](const std::string& path, int step = 0) {
+        log.clear();
+        VolumeSource source = at(path);
+        source.step = step;
+        Volume volume = loadVolume(source);
+        return std::pair{std::move(volume), log.namesPlaces()};
+    };
+    SECTION("HDF5: numbers as processors have them, of one step, in either byte order") {
+        for (const hid_t type : {H5T_STD_I16LE, H5T_STD_I16BE}) {
+            {
+                Hdf5Writer file(folder.path("v.h5"));
+                file.array("/v", {3, 2, 3, 4}, counted<std::int16_t>(72), type);
+            }
+            const auto [volume, isInFile] = load(folder.path("v.h5"), 2);
+            CHECK(isInFile);
+            CHECK(isCounted(volume, 48));
+        }
+    }
+    SECTION("not HDF5 in chunks, with bytes before it, or of numbers that processors do not have") {
+        const auto isRead = [&](const std::string& path) {
+            const auto [volume, isInFile] = load(path);
+            return isCounted(volume) && !isInFile;
+        };
+        CHECK(isRead(hdf5(folder, "chunks.h5", [](Hdf5Writer& file) {
+            const hsize_t chunk[] = {1, 3, 4};
+            H5Pset_chunk(file.how, 3, chunk);
+        })));
+        {
+            Hdf5Writer file(folder.path("block.h5"), 512);
+            file.array("/v", {2, 3, 4}, counted<std::int16_t>(24));
+        }
+        CHECK(isRead(folder.path("block.h5")));
+        {
+            Hdf5Writer file(folder.path("twelve.h5"));
+            const hid_t twelve = H5Tcopy(H5T_STD_I16LE);
+            H5Tset_precision(twelve, 12);
+            file.array("/v", {2, 3, 4}, counted<std::int16_t>(24), twelve);
+        }
+        CHECK(isRead(folder.path("twelve.h5")));
+    }
+    SECTION("classic NetCDF: whole arrays, and one record of several") {
+        for (const bool areRecords : {false, true}) {
+            {
+                NetCdfWriter file(folder.path("v.nc"));
+                file.dimension("time", areRecords ? NC_UNLIMITED : 3);
+                gridIn(file, NC_BYTE, [&] { file.variable("w", NC_INT, {"time", "z", "y", "x"}); });
+                file.values("v", {2, 3, 4}, counted<double>(24));
+                file.values("w", {3, 2, 3, 4}, counted<double>(72));
+            }
+            VolumeSource source = at(folder.path("v.nc"));
+            source.array = "w";
+            source.step = 1;
+            log.clear();
+            CHECK(isCounted(loadVolume(source), 24));
+            CHECK(log.namesPlaces());
+        }
+    }
+    SECTION("not where values have to be marked as missing") {
+        {
+            NetCdfWriter file(folder.path("v.nc"));
+            gridIn(file, NC_FLOAT).values("v", {2, 3, 4}, counted<double>(24));
+        }
+        const auto [volume, isInFile] = load(folder.path("v.nc"));
+        CHECK(isCounted(volume));
+        CHECK_FALSE(isInFile);
+    }
 }
 
 TEST_CASE("half floats, enumerations and truth values are numbers", "[arrays]") {

@@ -412,7 +412,7 @@ TEST_CASE("what happens to the process that reads is told in a sentence", "[dico
     // A file that takes too long is not tried twice.
     with("echo once >> '" + folder.path("count") + "'; read line; kill -XCPU $$");
     CHECK_THROWS_WITH(listSeries(at(path)), Contains("takes too long") && Contains("a.dcm"));
-    CHECK(fs::file_size(folder.path("count")) == 5); // "once" and a line end
+    CHECK(fs::file_size(folder.path("count")) == 5);  // "once" and a line end
     CHECK_THROWS_AS(filesOf(at(path)), TakesTooLong); // with which commands begin
     with("read line; echo nonsense");
     CHECK_THROWS_WITH(loadVolume(at(path)), Contains("can be understood"));

@@ -10,11 +10,11 @@
 
 #include "support/dicom_writer.h"
 #include "support/notices.h"
+#include "support/reader_log.h"
 #include "support/temp_folder.h"
 #include "support/tiff_writer.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
-#include "volume/process/reader_process.h"
 #include "volume/series.h"
 
 using namespace pellucid;
@@ -190,24 +190,14 @@ TEST_CASE("a folder of pictures is one volume, in the order in which people coun
 
 TEST_CASE("pixels that stand in a TIFF file as they are are read there, without the library", "[images]") {
     const TempFolder folder;
-    const struct Restore {
-        ~Restore() { setReaderProgram({}); }
-    } restore;
-    const std::string reader = (fs::read_symlink("/proc/self/exe").parent_path() / "pellucid-tiff-reader").string();
-    // Each line is kept before it is passed on.
-    const std::string keep = " | while IFS= read -r line; do printf '%s\\n' \"$line\" >>'" + folder.path("said") +
-                             "'; printf '%s\\n' \"$line\"; done\n";
-    const std::string program = folder.write("reader.sh", "#!/bin/sh\n'" + reader + "'" + keep);
-    fs::permissions(program, fs::perms::owner_all);
-    setReaderProgram(program);
+    const ReaderLog log(folder, "pellucid-tiff-reader");
     // The volume, and whether the reader has said where its values are.
     const auto load = [&](const std::string& bytes, int step = 0) {
-        fs::remove(folder.path("said"));
+        log.clear();
         VolumeSource source = at(folder.write("a.tif", bytes));
         source.step = step;
         Volume volume = loadVolume(source);
-        const bool isInFile = folder.read("said").find("\"in_file\"") != std::string::npos;
-        return std::pair{std::move(volume), isInFile};
+        return std::pair{std::move(volume), log.namesPlaces()};
     };
     const auto isRight = [](const Volume& volume, int first = 0) {
         bool right = volume.dims() == Int3(3, 2, 4);

@@ -17,6 +17,7 @@
 
 #include <libdeflate.h>
 
+#include "base/large_pages.h"
 #include "base/mapped_file.h"
 #include "base/stopwatch.h"
 #include "computing_time.h"
@@ -74,7 +75,7 @@ Least inProcess(const std::string& path) {
                 box.region = {Int3(0), dimsOf(layout, 0)};
                 withType(layout.layout.type, [&](auto zero) {
                     using Value = decltype(zero);
-                    std::vector<Value> values(bytesOf(box, layout, path) / sizeof(Value));
+                    std::vector<Value> values = zerosInLargePages<Value>(bytesOf(box, layout, path) / sizeof(Value));
                     volume->read(0, box, std::as_writable_bytes(std::span(values)), before, {});
                     if constexpr (std::is_floating_point_v<Value> || sizeof(Value) < 8) {
                         const Volume made({box.region.hi}, SampleArray<Value>(std::move(values)));

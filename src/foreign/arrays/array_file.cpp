@@ -43,6 +43,15 @@ std::string nameOf(ValueType type) {
         "u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f32", "f64"}[static_cast<std::size_t>(type)];
 }
 
+bool isRun(const ArrayVariable& variable, const ArrayBox& box) {
+    bool areSeveral = false; // an axis before this one has more than one place
+    for (std::size_t a = 0; a < variable.dims.size(); ++a) {
+        if (areSeveral && box.size[a] != variable.dims[a]) return false;
+        areSeveral |= box.size[a] > 1;
+    }
+    return true;
+}
+
 std::uint64_t valuesIn(const ArrayVariable& variable) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max() / 8;
     std::uint64_t count = 1;

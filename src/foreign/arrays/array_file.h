@@ -52,6 +52,8 @@ public:
     virtual std::vector<std::string> check(const ArrayVariable& variable) const = 0;
     /// The box by which it is stored, along each axis; 1 where any will do.
     virtual std::vector<std::int64_t> blockSize(const ArrayVariable& variable) const = 0;
+    /// Where the values of a box need no library to be read. Empty where they do, or where that is not known.
+    virtual std::optional<PlainValues> plainValues(const ArrayVariable& variable, const ArrayBox& box) const = 0;
     /// Reads values of variable.type in this machine's byte order, the last axis fastest. Throws FileError.
     virtual void read(const ArrayVariable& variable, const ArrayBox& box, std::span<std::byte> to) const = 0;
 
@@ -65,6 +67,8 @@ public:
     std::vector<double> values(const ArrayVariable& variable) const;
 };
 
+/// Whether the values of a box follow each other in all of an array.
+bool isRun(const ArrayVariable& variable, const ArrayBox& box);
 /// "u8", "i64", …
 std::string nameOf(ValueType type);
 std::uint64_t valuesIn(const ArrayVariable& variable); ///< 0 where they are too many to count

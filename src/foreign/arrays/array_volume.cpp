@@ -221,6 +221,14 @@ ReaderLayout ArrayVolume::layout(int step) const {
     layout.array = printable(m_chosen->name);
     for (const std::string& notice : m_notices) layout.notices.push_back(printable(notice));
     answer.missing = missingAs(contentsOf(layout).type, m_packed);
+    if (m_axes.places.size() > 2) {
+        const std::int64_t block = m_file->blockSize(*m_chosen)[m_axes.places[m_axes.places.size() - 3]];
+        answer.layersAtOnce = static_cast<int>(std::clamp<std::int64_t>(block, 1, contentsOf(layout).dims.z));
+    }
+    if (const auto plain = areMarked(m_packed) ? m_file->plainValues(*m_chosen, box) : std::nullopt) {
+        answer.inFile = {plain->start};
+        layout.bigEndian = plain->bigEndian;
+    }
     return answer;
 }
 

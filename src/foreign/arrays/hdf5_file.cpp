@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "foreign/arrays/array_file.h"
 #include "foreign/arrays/hdf5_types.h"
+#include "volume/formats/file_check.h"
 
 namespace pellucid {
 
@@ -106,6 +107,7 @@ public:
         return size;
     }
 
+    std::optional<PlainValues> plainValues(const ArrayVariable& variable, const ArrayBox& box) const override;
     void read(const ArrayVariable& variable, const ArrayBox& box, std::span<std::byte> to) const override {
         const Hdf5Handle& data = open(variable);
         const Hdf5Handle inFile(H5Dget_type(data.id())), there(H5Dget_space(data.id()));
@@ -148,6 +150,13 @@ private:
             m_opened = variable.name;
         }
         return m_data;
+    }
+
+    /// Bytes before what libhdf5 has written.
+    hsize_t userBlock() const {
+        const Hdf5Handle how(H5Fget_create_plist(m_file.id()));
+        hsize_t bytes = 0;
+        return H5Pget_userblock(how.id(), &bytes) < 0 ? ~hsize_t{0} : bytes;
     }
 
     static Sizes chunkOf(const Hdf5Handle& how, const ArrayVariable& variable) {
@@ -291,6 +300,30 @@ std::vector<std::string> Hdf5File::check(const ArrayVariable& variable) const {
         return {"no value of " + inQuotes(variable.name) +
                 " is in the file: all are what stands for values not written"};
     return {};
+}
+
+/// Of arrays in one piece, of numbers as processors have them.
+std::optional<PlainValues> Hdf5File::plainValues(const ArrayVariable& variable, const ArrayBox& box) const {
+    const Hdf5Handle& data = open(variable);
+    const Hdf5Handle how(H5Dget_create_plist(data.id())), inFile(H5Dget_type(data.id()));
+    const bool isHere = H5Pget_layout(how.id()) == H5D_CONTIGUOUS && H5Pget_external_count(how.id()) == 0 &&
+                        m_others.empty() && userBlock() == 0;
+    if (!isHere || !isRun(variable, box)) return {};
+    const Hdf5Type type = typeOf(inFile);
+    const H5T_order_t order = H5Tget_order(inFile.id());
+    const Hdf5Handle same(H5Tcopy(type.inMemory.id()));
+    if ((order != H5T_ORDER_LE && order != H5T_ORDER_BE) || H5Tset_order(same.id(), order) < 0 ||
+        H5Tequal(same.id(), inFile.id()) <= 0)
+        return {};
+    const std::uint64_t width = H5Tget_size(inFile.id()), all = valuesIn(variable) * width;
+    const haddr_t start = H5Dget_offset(data.id());
+    const std::uint64_t there = readableFileBytes(m_path);
+    if (start == HADDR_UNDEF || H5Dget_storage_size(data.id()) != all || start > there || all > there - start)
+        return {};
+    std::uint64_t at = 0;
+    for (std::size_t a = 0; a < variable.dims.size(); ++a)
+        at = at * static_cast<std::uint64_t>(variable.dims[a]) + static_cast<std::uint64_t>(box.first[a]);
+    return PlainValues{start + at * width, order == H5T_ORDER_BE};
 }
 
 void Hdf5File::requireFilters(const Hdf5Handle& how, const ArrayVariable& variable) const {

@@ -222,6 +222,13 @@ public:
         return std::vector<std::int64_t>(variable.dims.size(), 1);
     }
 
+    std::optional<PlainValues> plainValues(const ArrayVariable& variable, const ArrayBox& box) const override {
+        const Place& place = placeOf(variable);
+        const bool areTogether = !place.hasRecords || box.size[0] == 1 || m_recordBytes == place.recordBytes;
+        if (!areTogether || !isRun(variable, box)) return {};
+        return PlainValues{offsetOf(variable, place, box.first), true};
+    }
+
     void read(const ArrayVariable& variable, const ArrayBox& box, std::span<std::byte> to) const override {
         check(variable);
         const Place& place = placeOf(variable);

@@ -136,7 +136,7 @@ PackedValues packedValuesOf(const ArrayFile& file, const ArrayVariable& variable
 }
 
 void markMissing(const PackedValues& packed, std::span<std::byte> values) {
-    if (packed.missing.empty() && !packed.valid) return;
+    if (areMarked(packed)) return;
     withType(packed.type, [&](auto zero) {
         using T = decltype(zero);
         const std::span<T> all(reinterpret_cast<T*>(values.data()), values.size() / sizeof(T));
@@ -153,6 +153,10 @@ void markMissing(const PackedValues& packed, std::span<std::byte> values) {
             if (isNone) value = mark;
         }
     });
+}
+
+bool areMarked(const PackedValues& packed) {
+    return !packed.valid && std::ranges::all_of(packed.missing, [&](double value) { return packed.mark == value; });
 }
 
 std::optional<double> missingAs(SampleType kept, const PackedValues& packed) {

@@ -20,6 +20,9 @@ PackedValues packedValuesOf(const ArrayFile& file, const ArrayVariable& variable
 /// Writes `mark` over all values that are none.
 void markMissing(const PackedValues& packed, std::span<std::byte> values);
 
+/// Whether markMissing() leaves all values as they are.
+bool areMarked(const PackedValues& packed);
+
 /// What the mark becomes where values are unpacked to `kept`.
 std::optional<double> missingAs(SampleType kept, const PackedValues& packed);
 

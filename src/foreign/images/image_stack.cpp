@@ -21,7 +21,7 @@ FileError failure(const std::string& path, const std::string& what) {
     return {what, path, "copy or write the file again"};
 }
 
-void readPlain(const std::string& path, const PlainPixels& plain, std::size_t width, std::span<std::byte> to) {
+void readPlain(const std::string& path, const PlainValues& plain, std::size_t width, std::span<std::byte> to) {
     std::ifstream in(path, std::ios::binary);
     in.seekg(static_cast<std::streamoff>(plain.start));
     in.read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
@@ -70,11 +70,11 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
 /// The pictures behind the first one, where ImageJ has written no directories of them.
 void ImageStack::addPlainPages() {
     if (m_pages.size() != 1 || !m_pages.front().plain || m_order.images < 2) return;
-    const PlainPixels first = *m_pages.front().plain;
+    const PlainValues first = *m_pages.front().plain;
     const std::uint64_t bytes = bytesOf(m_shape), there = bytesOfFile(m_files.front()) - first.start;
     if (there / bytes < static_cast<std::uint64_t>(m_order.images)) return;
     for (int n = 1; n < m_order.images; ++n)
-        m_pages.push_back({0, n, PlainPixels{first.start + static_cast<std::uint64_t>(n) * bytes, first.bigEndian}});
+        m_pages.push_back({0, n, PlainValues{first.start + static_cast<std::uint64_t>(n) * bytes, first.bigEndian}});
 }
 
 /// The numbers of slices, channels and steps, which have to be those of the pages.
@@ -122,13 +122,13 @@ ReaderLayout ImageStack::layout(int step) const {
 
 /// Says where the pictures of a step stand in the file, where they need no library.
 void ImageStack::findPlain(int step, ReaderLayout& answer) const {
-    const std::optional<PlainPixels>& first = pageAt(0, 0, step).plain;
+    const std::optional<PlainValues>& first = pageAt(0, 0, step).plain;
     const std::uint64_t bytes = bytesOf(m_shape);
     std::vector<std::uint64_t> starts;
     bool areTogether = true;
     for (int channel = 0; channel < m_order.channels; ++channel)
         for (int slice = 0; slice < m_order.slices; ++slice) {
-            const std::optional<PlainPixels>& plain = pageAt(slice, channel, step).plain;
+            const std::optional<PlainValues>& plain = pageAt(slice, channel, step).plain;
             if (!plain || plain->bigEndian != first->bigEndian) return;
             areTogether &= starts.empty() || plain->start == starts.back() + bytes;
             starts.push_back(plain->start);
@@ -150,8 +150,6 @@ FileContents ImageStack::contents() const {
 
 void ImageStack::read(int step, const ReaderBox& box, std::span<std::byte> voxels, const BeforeFile& before,
                       const JobControl& job) const {
-    std::unique_ptr<PictureFile> file;
-    std::size_t opened = m_files.size(); // none
     const auto sliceBytes = static_cast<std::size_t>(bytesOf(m_shape));
     const glm::ivec2 size(m_shape.width, m_shape.height);
     const std::size_t bytesPerVoxel =
@@ -161,16 +159,16 @@ void ImageStack::read(int step, const ReaderBox& box, std::span<std::byte> voxel
     std::vector<std::byte> slice(isWhole ? 0 : sliceBytes); // whole ones need no other place
     for (int z = region.lo.z; z < region.hi.z; ++z) {
         const Page& page = pageAt(z, box.component, step);
-        if (opened != page.file) {
-            file = m_open(m_files[page.file]);
-            opened = page.file;
+        if (!page.plain && (!m_file || m_opened != page.file)) {
+            m_file = m_open(m_files[page.file]);
+            m_opened = page.file;
         }
         before(sliceBytes);
         const std::span<std::byte> to = isWhole ? voxels.first(sliceBytes) : std::span(slice);
         if (page.plain)
             readPlain(m_files[page.file], *page.plain, bytesPerValue(m_shape.type), to);
-        else if (file->goTo(page.page) && file->shape() == m_shape)
-            file->read(to);
+        else if (m_file->goTo(page.page) && m_file->shape() == m_shape)
+            m_file->read(to);
         else
             throw failure(m_files[page.file], "the file has changed while it was read");
         voxels = isWhole ? voxels.subspan(sliceBytes) : copyFromSlice(slice, size, bytesPerVoxel, region, voxels);

@@ -33,7 +33,7 @@ private:
     struct Page {
         std::size_t file = 0;
         int page = 0;
-        std::optional<PlainPixels> plain = {}; ///< of TIFF files that are read alone
+        std::optional<PlainValues> plain = {}; ///< of TIFF files that are read alone
     };
     const Page& pageAt(int slice, int channel, int step) const;
     void addPlainPages();
@@ -47,6 +47,8 @@ private:
     PageOrder m_order;         ///< with all numbers known
     PageShape m_shape;         ///< of all pages
     std::vector<std::string> m_notices;
+    mutable std::unique_ptr<PictureFile> m_file; ///< the one that was read last: boxes follow each other
+    mutable std::size_t m_opened = 0;            ///< which it is
 };
 
 } // namespace pellucid

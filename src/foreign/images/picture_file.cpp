@@ -44,11 +44,13 @@ public:
     TiffFile& operator=(const TiffFile&) = delete;
 
     bool goTo(int page) override {
+        if (page == m_page && m_isAtPage) return true;
         // One after the other: a search from the beginning for each takes long, and a chain may lead back.
         if (page == m_page + 1 && page > 0 ? TIFFReadDirectory(m_file) == 0
                                            : TIFFSetDirectory(m_file, static_cast<tdir_t>(page)) == 0)
-            return false;
+            return m_isAtPage = false;
         m_page = page;
+        m_isAtPage = true;
         return true;
     }
 
@@ -127,7 +129,7 @@ public:
                 }
     }
 
-    std::optional<PlainPixels> plainPixels() override {
+    std::optional<PlainValues> plainPixels() override {
         const PageShape page = shape();
         const auto is = [&](ttag_t tag, std::uint16_t wanted, std::uint16_t otherwise) {
             std::uint16_t value = otherwise;
@@ -152,7 +154,7 @@ public:
             next += bytes;
         }
         if (start == 0 || next < start || next > readableFileBytes(m_path)) return {}; // read() says what is wrong
-        return PlainPixels{start, TIFFIsBigEndian(m_file) != 0};
+        return PlainValues{start, TIFFIsBigEndian(m_file) != 0};
     }
 
     std::string description() override {
@@ -215,6 +217,7 @@ private:
     std::string m_path;
     TIFF* m_file = nullptr;
     int m_page = 0;
+    bool m_isAtPage = false;
 };
 
 } // namespace

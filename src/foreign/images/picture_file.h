@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "volume/formats/samples.h"
+#include "foreign/foreign_volume.h"
 
 namespace pellucid {
 
@@ -20,13 +20,6 @@ struct PageShape {
 std::string textOf(const PageShape& shape); ///< "3 x 2 pixels, 1 sample of 16 bits"
 std::uint64_t bytesOf(const PageShape& shape);
 
-/// The pixels of a page that stand in the file as read() gives them, without gaps, but for the order of their bytes.
-struct PlainPixels {
-    std::uint64_t start = 0; ///< bytes of the file
-    bool bigEndian = false;
-    bool operator==(const PlainPixels&) const = default;
-};
-
 class PictureFile {
 public:
     virtual ~PictureFile() = default;
@@ -36,7 +29,7 @@ public:
     virtual PageShape shape() = 0;
     virtual void read(std::span<std::byte> to) = 0; ///< the page it is at. Throws FileError
     /// Where the pixels of the page it is at need no library. Empty where they do, or where that is not known.
-    virtual std::optional<PlainPixels> plainPixels() { return {}; }
+    virtual std::optional<PlainValues> plainPixels() { return {}; }
     virtual std::string description() { return {}; }
     virtual double pixelsPerUnit([[maybe_unused]] int axis) { return 0; } ///< 0: not known
 };

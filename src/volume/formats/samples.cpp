@@ -15,6 +15,7 @@
 #include <glm/matrix.hpp>
 
 #include "base/error.h"
+#include "base/large_pages.h"
 #include "volume/formats/byte_source.h"
 #include "volume/formats/bzip2_bytes.h"
 #include "volume/formats/deflate_at_once.h"
@@ -372,7 +373,7 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
         length *= std::exchange(ny, 1);
         if (selection.stride[2] == size(1) * selection.stride[1]) length *= std::exchange(nz, 1);
     }
-    std::vector<Kept> kept(voxelCount(selection.dims));
+    std::vector<Kept> kept = zerosInLargePages<Kept>(voxelCount(selection.dims));
     std::size_t done = 0;
     VoxelReader<T> reader(values, selection.stride[0]);
     ReadProgress progress(job, kept.size());
@@ -392,7 +393,7 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
 /// samples.
 template <class T>
 Collected collectPlain(Values& values, const Selection& selection, const JobControl& job) {
-    std::vector<T> kept(voxelCount(selection.dims));
+    std::vector<T> kept = zerosInLargePages<T>(voxelCount(selection.dims));
     values.skip(selection.first);
     ReadProgress progress(job, kept.size());
     constexpr std::size_t kAtOnce = std::size_t{1} << 20;
@@ -414,7 +415,8 @@ std::optional<Collected> collectAtOnce(const FileLayout& layout, const Selection
         layout.open || layout.encoding != Encoding::Deflate || isInOtherOrder<T>(layout))
         return {};
     const std::size_t voxels = voxelCount(selection.dims);
-    std::vector<T> kept(voxels + static_cast<std::size_t>((layout.skip + sizeof(T) - 1) / sizeof(T)));
+    std::vector<T> kept =
+        zerosInLargePages<T>(voxels + static_cast<std::size_t>((layout.skip + sizeof(T) - 1) / sizeof(T)));
     auto* const first = reinterpret_cast<char*>(kept.data());
     if (!unpackAtOnce(layout.dataPath, layout.start, layout.zlib, layout.unchecked->toEnd,
                       {first, static_cast<std::size_t>(bytes)}, job))
@@ -544,7 +546,8 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
                          const Convert& convert) {
     const Int3 lo = plan.region.lo, size = plan.region.hi - lo;
     // Padded, so that codes of 8 bits need no copy.
-    std::vector<Kept> kept(voxelCount(plan.dims) + SampleArray<Kept>::kPadding), row(static_cast<std::size_t>(size.x));
+    std::vector<Kept> kept = zerosInLargePages<Kept>(voxelCount(plan.dims) + SampleArray<Kept>::kPadding);
+    std::vector<Kept> row(static_cast<std::size_t>(size.x));
     const bool asItIs = plan.factors == Int3(1);
     const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
     constexpr int kVoxelsAtOnce = 1 << 20;

@@ -154,12 +154,6 @@ public:
         hear(report);
     }
 
-    /// The voxels of one box, as a file that is there as long as this is. Nobody can change them any more.
-    std::string keptVoxels() {
-        end();
-        ::fcntl(m_voxels.number(), F_ADD_SEALS, F_SEAL_WRITE);
-        return voxels();
-    }
     std::string voxels() const { return "/proc/self/fd/" + std::to_string(m_voxels.number()); }
 
 private:
@@ -290,9 +284,13 @@ public:
         m_componentBytes = m_layerBytes * static_cast<std::uint64_t>(size.z);
         m_components =
             componentsAreApart(layout) ? static_cast<std::uint64_t>(contentsOf(layout).components) : std::uint64_t{1};
-        const std::uint64_t most = std::min(kMostSlab, availableMemoryBytes() / 4);
-        const auto affordable = static_cast<int>(std::clamp<std::uint64_t>(most / m_layerBytes, 1, 1u << 30));
-        m_layers = affordable >= answer.layersAtOnce ? affordable - affordable % answer.layersAtOnce : affordable;
+        const auto layersIn = [&](std::uint64_t bytes) {
+            return static_cast<int>(std::clamp<std::uint64_t>(bytes / m_layerBytes, 1, 1u << 30));
+        };
+        // Layers that are stored together are asked for together, where there is room.
+        const int together = std::min(answer.layersAtOnce, layersIn(std::min(kMostSlab, availableMemoryBytes() / 4)));
+        const int usual = layersIn(kSlab);
+        m_layers = usual > together ? usual - usual % together : together;
         const std::uint64_t room = m_layerBytes * static_cast<std::uint64_t>(std::min(m_layers, size.z));
         requireMemory("reading it", path, room);
         reader.makeRoom(room);
@@ -319,7 +317,10 @@ public:
     }
 
 private:
-    static constexpr std::uint64_t kMostSlab = 256u << 20; ///< bytes, but for one layer that is larger
+    /// Bytes of a slab, but for one layer that is larger, and for layers that are stored together. Memory that
+    /// processes share is slow to get: a little that stays in a processor's cache, copied from, costs less than enough
+    /// for all.
+    static constexpr std::uint64_t kSlab = 1u << 20, kMostSlab = 256u << 20;
 
     /// The slab with the byte m_at; slabs begin where layers that are stored together do.
     void readSlab() {
@@ -442,17 +443,7 @@ Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool m
         return readSamples(taken, layout, job);
     }
     const ExcerptPlan plan = planFor(taken, answer);
-    const ReaderBox all{0, {Int3(0), dims}, 0};
-    const std::uint64_t bytes = bytesOf(all, answer, source.path);
-    // Large volumes that are kept as they are read stay where they are.
-    const bool isKept = plan.isWhole() && bytes >= kMapBytes && contents.components == 1 && !layout.scaling &&
-                        bytes == voxelCount(dims) * bytesPerSample(contents.type);
-    if (isKept) {
-        reader.makeRoom(bytes);
-        reader.read(all, job.part(0, 2));
-        layout.dataPath = reader.keptVoxels();
-        return readSamples(taken, layout, job.part(1, 2));
-    }
+    static_cast<void>(bytesOf({0, {Int3(0), dims}, 0}, answer, source.path)); // throws where they are too many to count
     const LevelPlan level = levelFor(plan, answer);
     if (source.downsample == 0 && voxelCount(level.region.hi - level.region.lo) > kMostUnasked)
         throw FileError("reading its " + dimsText(level.region.hi - level.region.lo) + " voxels would take hours",
