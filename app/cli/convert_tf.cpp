@@ -26,10 +26,18 @@ struct Target {
     }
 };
 
+std::string pythonNames(const char* between) {
+    return joined(tfSnippets(), between, [](const TfSnippet& s) { return s.name + std::string(kPython); });
+}
+
 Target targetNamed(const std::string& name) {
     for (const TfSnippet& snippet : tfSnippets())
         if (lowerCase(name) == snippet.name + std::string(kPython)) return {nullptr, &snippet};
-    return {&tfFormatNamed(name), nullptr};
+    for (const TfFormat& format : tfFormats())
+        if (lowerCase(name) == format.name) return {&format, nullptr};
+    throw UsageError("there is no format " + inQuotes(name) + " of transfer functions", "",
+                     "use " + joined(tfFormats(), ", ", &TfFormat::name) + ", or for lines of Python " +
+                         pythonNames(", "));
 }
 
 /// A transfer function, and what it is written for.
@@ -73,8 +81,7 @@ Source sourceOf(const TfConversion& conversion, const SceneOptions& options, Pro
 } // namespace
 
 std::string tfFormatNames() {
-    return joined(tfFormats(), " ", &TfFormat::name) + "; or as lines of Python: " +
-           joined(tfSnippets(), " ", [](const TfSnippet& s) { return s.name + std::string(kPython); });
+    return joined(tfFormats(), " ", &TfFormat::name) + "; or as lines of Python: " + pythonNames(" ");
 }
 
 Answer convertTf(const TfConversion& conversion, const SceneOptions& options, const std::string& out,

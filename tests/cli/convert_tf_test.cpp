@@ -90,6 +90,7 @@ TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli
         CHECK_THAT(outcome.err, Catch::Contains(message));
     };
     refused({"convert", "tents:2", "--to", "word", "--out", "b"}, 2, "paraview, slicer");
+    refused({"convert", "tents:2", "--to", "word", "--out", "b"}, 2, "paraview-python");
     refused({"convert", "none.tfi", "--to", "slicer", "--out", "b"}, 1, "no such file");
     refused({"convert", "auto", "--to", "slicer", "--out", "b"}, 2, "--volume");
     refused(Words{"convert"} + kVolume + Words{"--volume", "a.nrrd", "--out", "b.nrrd"}, 2, "add --to");
