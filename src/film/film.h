@@ -8,7 +8,7 @@
 #include "base/enum_names.h"
 #include "base/job.h"
 #include "base/setting.h"
-#include "film/keyframes.h"
+#include "session/keyframes.h"
 #include "session/scene.h"
 
 namespace pellucid {

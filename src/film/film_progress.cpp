@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/json_file.h"
 #include "base/json_value.h"
-#include "film/keyframes_file.h"
+#include "session/keyframes_file.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
 
@@ -31,8 +31,9 @@ void addTo(Digest& digest, const json& j) { digest.add(j.dump(-1, ' ', false, js
 /// What is decided of the pictures; what is kept beside it changes none.
 json picturePart(const Scene& scene) {
     json j = jsonFromSession(scene.session, {}, DataPaths::Absolute);
-    for (const char* other : {"runs", "comparison", "target_keys", "features", "optimize", "refine", "slices",
-                              "picture_saliency", "hold_targets", "density", "field", "camera", "reference"})
+    for (const char* other :
+         {"runs", "comparison", "target_keys", "features", "optimize", "refine", "slices", "picture_saliency",
+          "hold_targets", "density", "field", "camera", "reference", "keyframes"})
         j.erase(other);
     return j;
 }
