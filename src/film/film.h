@@ -57,6 +57,9 @@ std::vector<FilmShot> shotsOf(const FilmSettings& settings, const std::vector<Ca
 /// and without keys.
 std::vector<FilmShot> shotsOf(const Keyframes& keys, double framesPerSecond, const Geometry& geometry);
 
+/// How many these are, `seconds` from the first key to the last.
+double picturesOf(double seconds, double framesPerSecond);
+
 struct FilmTask {
     Scene scene;
     std::vector<FilmShot> shots = {};
