@@ -63,6 +63,7 @@ void FilmController::addActions() {
 
 void FilmController::save(const FilmTask& task) {
     if (!m_services.attempt(tr("Cannot save the film"), [&] { checkFilm(task); })) return;
+    if (const auto said = m_said.extract(task.path)) m_services.notices().remove(said.mapped());
     m_tasks.push_back(task);
     start(task);
 }
@@ -74,6 +75,7 @@ void FilmController::sayUnfinished(const FilmTask& task) {
                              .arg(QFileInfo(QString::fromStdString(task.path)).fileName())
                              .arg(unfinished->pictures)
                              .arg(task.shots.size());
+    m_said[task.path] = text;
     m_services.notices().add({text, {{tr("Draw the rest"), [this, rest = withResume(task)] { save(rest); }}}});
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <deque>
+#include <map>
+#include <string>
 
 #include <QObject>
 #include <QSize>
@@ -38,7 +40,8 @@ private:
 
     Services& m_services;
     QSize m_seen;
-    std::deque<FilmTask> m_tasks; ///< under way, the first one now
+    std::deque<FilmTask> m_tasks;          ///< under way, the first one now
+    std::map<std::string, QString> m_said; ///< notices of films that are not finished, by their paths
 };
 
 } // namespace pellucid::gui
