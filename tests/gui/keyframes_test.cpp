@@ -423,11 +423,11 @@ TEST_CASE("a film that was stopped goes on where it was", "[keyframes][film]") {
     w.addThree();
     FilmController& films = w.controllers().films;
     QSignalSpy saved(&films, &FilmController::saved);
-    const auto begin = [&](const QString& name, int width = 200) {
+    const auto begin = [&](const QString& name, int width = 480) {
         withFilmDialog([=, &folder](FilmDialog& dialog) {
             dialog.findChild<QDoubleSpinBox*>("filmRate")->setValue(5);
             dialog.findChild<QSpinBox*>("filmWidth")->setValue(width);
-            dialog.findChild<QSpinBox*>("filmHeight")->setValue(150);
+            dialog.findChild<QSpinBox*>("filmHeight")->setValue(360);
             dialog.findChild<QLineEdit*>("filmPath")->setText(folder.filePath(name));
             dialog.accept();
         });

@@ -251,6 +251,13 @@ QString KeyStrip::tipAt(const QPointF& at) const {
 }
 
 bool KeyStrip::event(QEvent* event) {
+    if (event->type() == QEvent::ShortcutOverride) { // keys of the strip are no other's while it has the focus
+        constexpr int kOwn[] = {Qt::Key_Left, Qt::Key_Right,  Qt::Key_PageUp, Qt::Key_PageDown, Qt::Key_Home,
+                                Qt::Key_End,  Qt::Key_Insert, Qt::Key_Delete, Qt::Key_Escape};
+        const auto* const key = static_cast<QKeyEvent*>(event);
+        if (!key->modifiers().testFlag(Qt::AltModifier) && std::ranges::find(kOwn, key->key()) != std::end(kOwn))
+            event->accept();
+    }
     return showsTip(*event, *this, [this](const QPoint& at) { return tipAt(at); }) || QWidget::event(event);
 }
 
