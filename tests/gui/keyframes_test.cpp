@@ -2,6 +2,7 @@
 #include "gui_support.h"
 
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QFile>
@@ -56,7 +57,7 @@ struct OpenKeyframes : OpenWindow {
         REQUIRE(button.isEnabled());
         QTest::mouseClick(&button, Qt::LeftButton);
     }
-    /// From three sides, at 0, 2 and 4 s; the second one is fainter, the third one lit.
+    /// From three sides, at 0, 2 and 4 s; the second one is fainter, the third one without light.
     void addThree() {
         look(10);
         click("keyframesAdd");
@@ -64,7 +65,7 @@ struct OpenKeyframes : OpenWindow {
         fade(0.05);
         click("keyframesAdd");
         look(200);
-        editPart(store(), &Session::display, "Light", {}, [](DisplaySettings& d) { d.light.on = true; });
+        editPart(store(), &Session::display, "Light", {}, [](DisplaySettings& d) { d.light.on = false; });
         click("keyframesAdd");
         REQUIRE(keys().size() == 3);
     }
@@ -141,7 +142,7 @@ TEST_CASE("keys keep what is shown, and the playhead shows what lies between the
     CHECK(w.keys()[2].time == 4);
     CHECK(w.keys()[0].state.camera == w.viewFrom(10));
     CHECK(w.keys()[1].state.tf.points[1].opacity == 0.05);
-    CHECK((w.keys()[2].state.light.on && !w.keys()[1].state.light.on));
+    CHECK((!w.keys()[2].state.light.on && w.keys()[1].state.light.on));
     CHECK(w.child<QComboBox>("keyframesKey").currentText() == "Key 3 at 4 s");
     CHECK(w.child<QLabel>("keyframesTime").text() == "4.00 s of 4.00 s");
 
@@ -395,6 +396,7 @@ TEST_CASE("a film of keyframes has the pictures that the keys say", "[keyframes]
         CHECK(dialog.findChild<QLabel*>("filmSummary")->text() == "9 pictures, 4.5 s");
         dialog.findChild<QSpinBox*>("filmWidth")->setValue(64);
         dialog.findChild<QSpinBox*>("filmHeight")->setValue(48);
+        dialog.findChild<QCheckBox*>("filmAnnotated")->setChecked(false);
         dialog.findChild<QLineEdit*>("filmPath")->setText(folder.filePath("way"));
         dialog.accept();
     });
@@ -419,15 +421,18 @@ TEST_CASE("a film of keyframes has the pictures that the keys say", "[keyframes]
 
 TEST_CASE("a film that was stopped goes on where it was", "[keyframes][film]") {
     const QTemporaryDir folder;
-    OpenKeyframes w(48);
+    OpenKeyframes w(24);
+    // Where there is no GPU its pictures take seconds.
+    editPart(w.store(), &Session::measure, "Engine", {}, [](MeasureSettings& m) { m.engine = EngineChoice::Cpu; });
     w.addThree();
     FilmController& films = w.controllers().films;
     QSignalSpy saved(&films, &FilmController::saved);
-    const auto begin = [&](const QString& name, int width = 480) {
+    const auto begin = [&](const QString& name, int width = 240) {
         withFilmDialog([=, &folder](FilmDialog& dialog) {
             dialog.findChild<QDoubleSpinBox*>("filmRate")->setValue(5);
             dialog.findChild<QSpinBox*>("filmWidth")->setValue(width);
-            dialog.findChild<QSpinBox*>("filmHeight")->setValue(360);
+            dialog.findChild<QSpinBox*>("filmHeight")->setValue(180);
+            dialog.findChild<QCheckBox*>("filmAnnotated")->setChecked(false);
             dialog.findChild<QLineEdit*>("filmPath")->setText(folder.filePath(name));
             dialog.accept();
         });
