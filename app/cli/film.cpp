@@ -3,13 +3,13 @@
 
 #include "commands.h"
 #include "film/film_progress.h"
-#include "film/keyframes_file.h"
 #include "film/movie_file.h"
 #include "options/annotate_option.h"
 #include "options/setting_options.h"
 #include "output_files.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
+#include "session/keyframes_file.h"
 #include "stop_note.h"
 
 namespace pellucid::cli {

@@ -239,13 +239,14 @@ std::vector<FilmShot> shotsOf(const FilmSettings& settings, const std::vector<Ca
     return shots;
 }
 
+double picturesOf(double seconds, double framesPerSecond) { return std::floor(seconds * framesPerSecond + 1e-6) + 1; }
+
 std::vector<FilmShot> shotsOf(const Keyframes& keys, double framesPerSecond, const Geometry& geometry) {
     if (keys.empty()) throw UsageError("the film has no keys", "", "add a key");
-    const double begin = keys.front().time, pictures = (keys.back().time - begin) * framesPerSecond;
-    checkCount(pictures + 1);
+    const double begin = keys.front().time, pictures = picturesOf(keys.back().time - begin, framesPerSecond);
+    checkCount(pictures);
     std::vector<FilmShot> shots;
-    const int last = static_cast<int>(pictures + 1e-6);
-    for (int n = 0; n <= last; ++n) {
+    for (int n = 0; n < static_cast<int>(pictures); ++n) {
         const double time = begin + n / framesPerSecond;
         shots.push_back({frameAt(keys, time), cameraAt(keys, time, geometry), time});
     }

@@ -8,7 +8,7 @@
 #include "base/enum_names.h"
 #include "base/job.h"
 #include "base/setting.h"
-#include "film/keyframes.h"
+#include "session/keyframes.h"
 #include "session/scene.h"
 
 namespace pellucid {
@@ -56,6 +56,9 @@ std::vector<FilmShot> shotsOf(const FilmSettings& settings, const std::vector<Ca
 /// From the first key to the last, both included where their distance is a number of whole pictures. Throws likewise,
 /// and without keys.
 std::vector<FilmShot> shotsOf(const Keyframes& keys, double framesPerSecond, const Geometry& geometry);
+
+/// How many these are, `seconds` from the first key to the last.
+double picturesOf(double seconds, double framesPerSecond);
 
 struct FilmTask {
     Scene scene;

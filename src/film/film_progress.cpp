@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/json_file.h"
 #include "base/json_value.h"
-#include "film/keyframes_file.h"
+#include "session/keyframes_file.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
 
@@ -28,12 +28,17 @@ constexpr int kVersion = 1;
 /// Names of files need not be UTF-8.
 void addTo(Digest& digest, const json& j) { digest.add(j.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
-/// What is decided of the pictures; what is kept beside it changes none.
-json picturePart(const Scene& scene) {
-    json j = jsonFromSession(scene.session, {}, DataPaths::Absolute);
-    for (const char* other : {"runs", "comparison", "target_keys", "features", "optimize", "refine", "slices",
-                              "picture_saliency", "hold_targets", "density", "field", "camera", "reference"})
+/// What is decided of the pictures; what is kept beside it changes none, nor does what keys decide.
+json picturePart(const FilmTask& task) {
+    json j = jsonFromSession(task.scene.session, {}, DataPaths::Absolute);
+    for (const char* other :
+         {"runs", "comparison", "target_keys", "features", "optimize", "refine", "slices", "picture_saliency",
+          "hold_targets", "density", "field", "camera", "reference", "keyframes"})
         j.erase(other);
+    if (task.keys.empty()) return j;
+    for (const char* decided : {"clip", "frame"}) j.erase(decided);
+    j["display"].erase("light");
+    for (const char* decided : {"transfer_functions", "adapted"}) j["variables"].front().erase(decided);
     return j;
 }
 
@@ -44,9 +49,9 @@ std::string filmDigest(const FilmTask& task) {
     addTo(digest, {{"program", PELLUCID_VERSION},
                    {"size", {task.width, task.height}},
                    {"title", task.scene.volume->title},
-                   {"tf", jsonFromTf(task.scene.tf)},
+                   {"tf", task.keys.empty() ? jsonFromTf(task.scene.tf) : json()},
                    {"around", task.around.any() ? task.around.on : false}});
-    addTo(digest, picturePart(task.scene));
+    addTo(digest, picturePart(task));
     for (const AnnotationPartInfo& part : kAnnotationParts) addTo(digest, task.around.*part.shown);
     addTo(digest, jsonFromKeyframes(task.keys));
     for (const FilmShot& shot : task.shots)

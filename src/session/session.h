@@ -19,6 +19,7 @@
 #include "render/render_settings.h"
 #include "render/view.h"
 #include "saliency/saliency_field.h"
+#include "session/keyframes.h"
 #include "session/part.h"
 #include "tf/transfer_function.h"
 #include "volume/derived.h"
@@ -384,6 +385,7 @@ struct Session {
     Part<FieldView> field;           ///< what is drawn in the place of the data
     Part<PictureSaliencyView> pictureSaliency;
     Part<ComparisonView> comparison;
+    Part<Keyframes> keyframes;   ///< of a film of these data
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
     std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
 

@@ -634,6 +634,11 @@ ComparisonView toComparison(const JsonValue& j) {
     return c;
 }
 
+KeyState toKeyState(const JsonValue& j) {
+    return {cameraFromJson(j["camera"]), toTf(j["tf"]), toClipping(j["clip"]), toLight(j["light"]),
+            j["frame"].whole(0, kMostCount)};
+}
+
 json fromRunStart(const RunStart& start) {
     json j{{"tf", fromTf(start.tf)},
            {"camera", fromCamera(start.camera)},
@@ -723,6 +728,43 @@ Clipping clippingFromJson(const JsonValue& j) { return toClipping(j); }
 json jsonFromLight(const Light& light) { return fromLight(light); }
 Light lightFromJson(const JsonValue& j) { return toLight(j); }
 
+json jsonFromKeys(const Keyframes& keys) {
+    json array = json::array();
+    for (const Keyframe& key : keys) {
+        json one{{"time", key.time},
+                 {"easing", name(key.easing)},
+                 {"camera", fromCamera(key.state.camera)},
+                 {"tf", fromTf(key.state.tf)},
+                 {"clip", fromClipping(key.state.clipping)},
+                 {"light", fromLight(key.state.light)},
+                 {"frame", key.state.frame}};
+        if (!key.name.empty()) one["name"] = key.name;
+        array.push_back(std::move(one));
+    }
+    return array;
+}
+
+Keyframes keysFromJson(const JsonValue& array, const std::function<KeyState(const JsonValue& key)>& state) {
+    const std::vector<JsonValue> items = array.items();
+    if (items.size() > kMostKeyframes) array.fail("these are too many keys");
+    Keyframes keys;
+    for (const JsonValue& item : items) {
+        Keyframe key;
+        key.time = item["time"].number(0, kMostFilmSeconds);
+        if (!keys.empty() && !(key.time > keys.back().time + kSameKeyTime))
+            item["time"].fail("a key must come later than the one before", "sort the keys by time");
+        if (item.has("name")) key.name = item["name"].text();
+        if (item.has("easing")) {
+            const auto easing = findNamed<Easing>(item["easing"].text());
+            if (!easing) item["easing"].fail("no such easing", "write linear, smooth, ease-in, ease-out or hold");
+            key.easing = *easing;
+        }
+        key.state = state(item);
+        keys.push_back(std::move(key));
+    }
+    return keys;
+}
+
 json jsonFromSession(const Session& s, const std::string& folder, DataPaths paths) {
     json j{{"format", kFormat},
            {"version", kVersion},
@@ -742,6 +784,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"field", fromField(*s.field)},
            {"picture_saliency", from(*s.pictureSaliency)},
            {"comparison", fromComparison(*s.comparison)},
+           {"keyframes", jsonFromKeys(*s.keyframes)},
            {"target_keys", fromTargetKeys(*s.targetKeys)},
            {"adapt", from(*s.adapt)},
            {"hsb", fromHsb(*s.hsb)},
@@ -783,6 +826,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("field")) s.field = toField(j["field"]);
     if (j.has("picture_saliency")) s.pictureSaliency = to<PictureSaliencyView>(j["picture_saliency"]);
     if (j.has("comparison")) s.comparison = toComparison(j["comparison"]);
+    if (j.has("keyframes")) s.keyframes = keysFromJson(j["keyframes"], toKeyState);
     if (j.has("target_keys")) s.targetKeys = toTargetKeys(j["target_keys"]);
     if (j.has("adapt")) s.adapt = to<AdaptSettings>(j["adapt"]);
     if (j.has("hsb")) s.hsb = toHsb(j["hsb"]);
@@ -804,7 +848,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         {"format",  "version",     "variables", "frame",    "features", "hold_targets",     "camera",     "clip",
          "display", "reference",   "measure",   "optimize", "refine",   "slices",           "field",      "target_keys",
          "adapt",   "hsb",         "ground",    "runs",     "density",  "picture_saliency", "comparison", "title",
-         "rulers",  "coordinates", "overlay"});
+         "rulers",  "coordinates", "overlay",   "keyframes"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -1,6 +1,7 @@
 // *.pellucid.json: a session as a file.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,5 +41,9 @@ nlohmann::json jsonFromClipping(const Clipping& clipping);
 Clipping clippingFromJson(const JsonValue& json);
 nlohmann::json jsonFromLight(const Light& light);
 Light lightFromJson(const JsonValue& json);
+/// An array of keys, each of which says all that it decides.
+nlohmann::json jsonFromKeys(const Keyframes& keys);
+/// Their times, which must rise, names and easings; `state` reads what each decides.
+Keyframes keysFromJson(const JsonValue& array, const std::function<KeyState(const JsonValue& key)>& state);
 
 } // namespace pellucid

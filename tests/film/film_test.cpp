@@ -10,9 +10,9 @@
 #include <glm/geometric.hpp>
 
 #include "base/atomic_file.h"
-#include "film_scene.h"
 #include "image_io/image_file.h"
 #include "render/camera_motion.h"
+#include "support/film_scene.h"
 #include "support/temp_folder.h"
 
 using namespace pellucid;
@@ -141,4 +141,15 @@ TEST_CASE("a film is one file, whole or absent", "[film]") {
     });
     CHECK(folder.fileCount() == 1); // nothing else stays behind
     CHECK(readText(task.path) == "000000.png\n000001.png\n000002.png\n000003.png\n000004.png\nfilm.mp4\n");
+}
+
+TEST_CASE("keyframes are pictures from the first key to the last", "[film]") {
+    const Scene scene = filmScene();
+    const Geometry& g = scene.volume->geometry();
+    const auto shots = shotsOf(twoKeys(scene, 2), 5, g);
+    REQUIRE(shots.size() == 11); // at 0, 0.2 … 2 s
+    CHECK(*shots.back().time == Approx(2));
+    CHECK(shots.back().camera == twoKeys(scene, 2)[1].state.camera);
+    CHECK_THROWS_AS(shotsOf(Keyframes{}, 5, g), UsageError);
+    CHECK_THROWS_AS(shotsOf(twoKeys(scene, 3600), 120, g), UsageError); // 432 001 pictures
 }

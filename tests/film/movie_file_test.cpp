@@ -10,9 +10,10 @@
 
 #include "base/atomic_file.h"
 #include "base/child_program.h"
-#include "film_scene.h"
+#include "film/film.h"
 #include "image_io/image_file.h"
 #include "render/ssim.h"
+#include "support/film_scene.h"
 #include "support/temp_folder.h"
 
 using namespace pellucid;

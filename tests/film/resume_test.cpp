@@ -7,8 +7,8 @@
 #include "base/atomic_file.h"
 #include "film/film_progress.h"
 #include "film/movie_file.h"
-#include "film_scene.h"
 #include "image_io/animated_png.h"
+#include "support/film_scene.h"
 #include "support/temp_folder.h"
 
 using namespace pellucid;

@@ -33,7 +33,7 @@ void withDialog(const std::function<void(FilmDialog&)>& answer) {
 
 TEST_CASE("the film dialog shows what its kind has, and how long the film will be", "[film]") {
     FilmOptions offered;
-    FilmDialog dialog(offered, {640, 480}, 20, true);
+    FilmDialog dialog(offered, {640, 480}, 20, 4.0, true);
     dialog.show();
     const auto shown = [&](const char* name) { return dialog.findChild<QWidget*>(name)->isVisible(); };
     auto& kind = *dialog.findChild<QComboBox*>("filmKind");

@@ -708,3 +708,27 @@ TEST_CASE("pictures of a series for the guide", "[.pictures]") {
     REQUIRE(waitFor([&] { return panel.knownCount() == player.frameCount(); }));
     grab("curves_over_time.png");
 }
+
+TEST_CASE("the playhead of a film goes to the frames of its keys, with what belongs to them", "[player][keyframes]") {
+    SeriesWindow w;
+    KeyframesController& keyframes = w.controllers().keyframes;
+    keyframes.add();
+    w.goTo(4);
+    w.document().setTf(w.scaled(0.5), "Fade");
+    const double faint = w.peak();
+    keyframes.add();
+    REQUIRE(keyframes.keys().size() == 2);
+    CHECK(keyframes.keys()[1].state.frame == 4);
+    keyframes.goTo(0);
+    REQUIRE(waitFor([&] { return w.frame() == 0; }));
+    w.settle();
+    CHECK(w.peak() == Approx(2 * faint));
+    keyframes.goTo(1); // halfway
+    REQUIRE(waitFor([&] { return w.frame() == 2; }));
+    w.settle();
+    CHECK(w.peak() == Approx(1.5 * faint));
+    keyframes.goTo(2);
+    REQUIRE(waitFor([&] { return w.frame() == 4; }));
+    w.settle();
+    CHECK(w.peak() == Approx(faint));
+}

@@ -147,6 +147,38 @@ TEST_CASE("no value of another type is believed", "[session][json]") {
     CHECK(tried > 1000);
 }
 
+TEST_CASE("keyframes are kept, files from before there were any are read, and wrong ones are refused",
+          "[session][json][film]") {
+    Session session = full();
+    Keyframe first{0.5, "front", Easing::Smooth}, second{2};
+    first.state.tf = *session.tf();
+    first.state.frame = 3;
+    second.state.camera.eye = {1, 2, 30};
+    second.state.light.on = true;
+    session.keyframes = Keyframes{first, second};
+    json document = documentOf(session);
+    CHECK(*sessionOfDocument(document).keyframes == Keyframes{first, second});
+    const auto placeOfError = [](const json& wrong) {
+        try {
+            sessionOfDocument(wrong);
+        } catch (const Error& e) {
+            return e.where();
+        }
+        return std::string();
+    };
+    json wrong = document;
+    wrong["keyframes"][1]["time"] = 0.5;
+    CHECK(placeOfError(wrong) == "s.json at /keyframes/1/time");
+    wrong = document;
+    wrong["keyframes"][0]["easing"] = "softly";
+    CHECK(placeOfError(wrong) == "s.json at /keyframes/0/easing");
+    document.erase("keyframes");
+    const Session before = sessionOfDocument(document);
+    CHECK(before.keyframes->empty());
+    session.keyframes = Keyframes();
+    CHECK(before == session);
+}
+
 TEST_CASE("a number out of its range is refused with its place, or makes a session that is as good as any",
           "[session][json]") {
     std::size_t refused = 0, tried = 0;

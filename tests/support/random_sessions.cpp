@@ -345,6 +345,19 @@ TransferFunction randomTf(Random& random, FeatureId first) {
     return tf;
 }
 
+/// Up to two, cut and lit as the session is.
+Keyframes randomKeyframes(Random& random, const Session& of) {
+    Keyframes keys;
+    double time = 0;
+    for (int i = random.chance(0.4) ? 1 + random.below(2) : 0; i > 0; --i) {
+        Keyframe key{time, random.chance(0.5) ? "Näher \"heran\"" : "", static_cast<Easing>(random.below(5))};
+        key.state = {randomCamera(random), randomTf(random, 1), *of.clipping, of.display->light, random.below(60)};
+        keys.push_back(std::move(key));
+        time += random.between(0.01, 900);
+    }
+    return keys;
+}
+
 ComparisonView randomComparison(Random& random, const Session& of) {
     ComparisonView view{static_cast<CompareMode>(random.below(4)),
                         random.chance(0.5),
@@ -416,6 +429,7 @@ Session randomSession(std::uint32_t number) {
     for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
     addSeriesParts(s, random);
     s.extraJson = randomExtra(random);
+    s.keyframes = randomKeyframes(random, s);
     return s;
 }
 

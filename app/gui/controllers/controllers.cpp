@@ -52,6 +52,7 @@ Controllers::Controllers(Services& all) : services(all) {
     addSliceActions(services);
     player.addActions();
     adapting.addActions();
+    keyframes.addActions();
     addThemeActions(services);
     addVisionActions(services);
     clipHandles = &addClipHandlesAction(services);

@@ -8,6 +8,7 @@
 #include "controllers/figure_controller.h"
 #include "controllers/film_controller.h"
 #include "controllers/holder_controller.h"
+#include "controllers/keyframes_controller.h"
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
@@ -52,6 +53,7 @@ struct Controllers {
     RecoveryController recovery{services, opening, saving};
     PlayerController player{services, opening}; ///< frames of a series
     AdaptController adapting{services, player}; ///< transfer functions over time
+    KeyframesController keyframes{services, player, films};
     ViewSearchController views{services, optimizing};
     ComparisonController comparing{services, player, refining};
     ProbeController probe{services};

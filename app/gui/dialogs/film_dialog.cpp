@@ -28,8 +28,9 @@ const Setting& filmSetting(const char* key) { return settingOf(settingsOf<FilmSe
 
 } // namespace
 
-FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series, bool annotated, QWidget* parent)
-    : QDialog(parent), m_series(series), m_offered(offered.settings),
+FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series, std::optional<double> keys,
+                       bool annotated, QWidget* parent)
+    : QDialog(parent), m_series(series), m_keys(keys), m_offered(offered.settings),
       m_kind(named(new QComboBox(this), "filmKind", QString::fromUtf8(filmSetting("kind").help))),
       m_preset(named(new QComboBox(this), "filmPreset", tr("Sizes that are often wanted"))),
       m_seconds(numberBox("seconds", &FilmSettings::seconds, "filmSeconds", 2)),
@@ -57,7 +58,8 @@ FilmDialog::FilmDialog(const FilmOptions& offered, const QSize& seen, int series
         item->setToolTip(why);
     };
     if (series == 0) leaveOut(FilmKind::Series, tr("The data have one frame"));
-    leaveOut(FilmKind::Keys, tr("pellucid-cli film makes films of keyframes"));
+    if (!keys)
+        leaveOut(FilmKind::Keys, tr("There are no keyframes yet: the panel Keyframes keeps what is shown as a key"));
     m_kind->setCurrentIndex(static_cast<int>(offered.settings.kind));
     m_annotated->setEnabled(annotated);
     m_annotated->setChecked(annotated);
@@ -161,11 +163,16 @@ void FilmDialog::follow() {
     };
     show(m_ofTurntable, now.kind == FilmKind::Turntable);
     show(m_ofViews, now.kind == FilmKind::Views);
-    show(m_ofLength, now.kind != FilmKind::Series);
-    const double pictures =
-        now.kind == FilmKind::Series ? m_series : std::max(1.0, std::round(now.seconds * now.framesPerSecond));
+    show(m_ofLength, now.kind == FilmKind::Turntable || now.kind == FilmKind::Views);
+    const double count = pictures(now);
     m_summary->setText(
-        tr("%L1 pictures, %L2 s").arg(static_cast<int>(pictures)).arg(pictures / now.framesPerSecond, 0, 'f', 1));
+        tr("%L1 pictures, %L2 s").arg(static_cast<int>(count)).arg(count / now.framesPerSecond, 0, 'f', 1));
+}
+
+double FilmDialog::pictures(const FilmSettings& settings) const {
+    if (settings.kind == FilmKind::Series) return m_series;
+    if (settings.kind == FilmKind::Keys) return picturesOf(m_keys.value_or(0), settings.framesPerSecond);
+    return std::max(1.0, std::round(settings.seconds * settings.framesPerSecond));
 }
 
 FilmOptions FilmDialog::options() const {

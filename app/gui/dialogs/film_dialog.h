@@ -1,6 +1,8 @@
 // What a film shows, how long and how large it is, and where it goes.
 #pragma once
 
+#include <optional>
+
 #include <QDialog>
 #include <QSize>
 
@@ -27,8 +29,10 @@ class FilmDialog : public QDialog {
     Q_OBJECT
 public:
     /// `seen`: pixels of the view, the size that is offered first; `series`: pictures of a film of all frames, 0: there
-    /// is no series; `annotated`: whether annotations are shown.
-    FilmDialog(const FilmOptions& offered, const QSize& seen, int series, bool annotated, QWidget* parent = nullptr);
+    /// is no series; `keys`: seconds from the first key to the last, empty: there are none; `annotated`: whether
+    /// annotations are shown.
+    FilmDialog(const FilmOptions& offered, const QSize& seen, int series, std::optional<double> keys, bool annotated,
+               QWidget* parent = nullptr);
     FilmOptions options() const;
 
     /// As words that options() has then: the view that the window has, such as "30,20,1.5".
@@ -41,7 +45,10 @@ private:
     void browse();
     void follow();
 
+    double pictures(const FilmSettings& settings) const; ///< how many the film will have
+
     const int m_series;
+    const std::optional<double> m_keys;
     FilmSettings m_offered;
     QString m_present;
     QComboBox *m_kind, *m_preset;

@@ -1,5 +1,6 @@
 #include "panels/panel_parts.h"
 
+#include <QAction>
 #include <QComboBox>
 #include <QDir>
 #include <QPainter>
@@ -24,6 +25,24 @@ QIcon iconOf(const ColorMap& map) {
 }
 
 } // namespace
+
+QToolButton* actionButton(QAction& does, const char* name, const QString& text, QWidget* parent) {
+    QToolButton* const made = named(toolButton(text, parent), name, does.toolTip());
+    made->setAutoRaise(true);
+    made->setAccessibleName(does.toolTip());
+    made->setCheckable(does.isCheckable());
+    const auto followAction = [made, &does] {
+        made->setEnabled(does.isEnabled());
+        made->setChecked(does.isChecked());
+    };
+    QObject::connect(made, &QToolButton::clicked, &does, [&does, followAction] {
+        does.trigger();
+        followAction(); // a click has checked it by itself
+    });
+    QObject::connect(&does, &QAction::changed, made, followAction);
+    followAction();
+    return made;
+}
 
 void fillFeatures(QComboBox& box, const Scene& scene, const QString& all, int present) {
     box.clear();

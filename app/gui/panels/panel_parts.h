@@ -8,7 +8,9 @@
 #include "services/services.h"
 #include "store/edits.h"
 
+class QAction;
 class QComboBox;
+class QToolButton;
 
 namespace pellucid {
 struct Plot;
@@ -27,6 +29,9 @@ void followParts(Services& services, QObject* context, const std::function<void(
     QObject::connect(&services, &Services::readOnlyChanged, context, follow);
     follow();
 }
+
+/// Does what the action does, and can be pressed when it can; its tool tip is the action's.
+QToolButton* actionButton(QAction& does, const char* name, const QString& text, QWidget* parent);
 
 /// A row for all features, which says `all`, and one per feature; `present` is the index of the feature that is chosen,
 /// −1: all.

@@ -6,7 +6,7 @@ namespace pellucid::gui {
 using Panel = PanelInfo();
 Panel transferFunctionPanel, playerPanel, featuresPanel, refinePanel, influencePanel, convergencePanel, displayPanel,
     lightPanel, clipPanel, overlayPanel, fieldsPanel, galleryPanel, viewsPanel, settingsPanel, spacePanel,
-    variablesPanel, temporalPanel, pictureSaliencyPanel, comparePanel, measuresPanel;
+    variablesPanel, temporalPanel, keyframesPanel, pictureSaliencyPanel, comparePanel, measuresPanel;
 
 std::vector<PanelInfo> panelRegistry() {
     return {transferFunctionPanel(),
@@ -28,7 +28,8 @@ std::vector<PanelInfo> panelRegistry() {
             settingsPanel(),
             spacePanel(),
             variablesPanel(),
-            temporalPanel()};
+            temporalPanel(),
+            keyframesPanel()};
 }
 
 } // namespace pellucid::gui

@@ -9,6 +9,7 @@
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
+#include "panels/panel_parts.h"
 #include "panels/time_strip.h"
 #include "services/services.h"
 #include "widgets/controls.h"
@@ -138,7 +139,6 @@ private:
     QLayout* playRow();
     QLayout* adaptRow();
     QLayout* keyRow();
-    QToolButton* button(QAction& action, const char* name, const QIcon& icon, const QString& text = {});
     void showDock(bool shown);
 
     Services& m_services;
@@ -195,7 +195,8 @@ QLayout* PlayerPanel::playRow() {
              {does.last, "lastFrame", Sign::Last},
              {does.loops, "loopFrames", Sign::Loop},
              {does.backward, "playBackward", Sign::Back}}) {
-        QToolButton* const made = button(*action, name, signOf(sign));
+        QToolButton* const made = actionButton(*action, name, {}, this);
+        made->setIcon(signOf(sign));
         if (sign == Sign::Play) m_play = made;
         row->addWidget(made);
     }
@@ -220,25 +221,6 @@ void PlayerPanel::fill(FittingRow& row) {
         row.add(work->bar, 1);
         row.add(work->stop);
     }
-}
-
-QToolButton* PlayerPanel::button(QAction& does, const char* name, const QIcon& icon, const QString& text) {
-    QToolButton* const made = named(toolButton(text, this), name, does.toolTip());
-    made->setIcon(icon);
-    made->setAutoRaise(true);
-    made->setAccessibleName(does.toolTip());
-    made->setCheckable(does.isCheckable());
-    const auto followAction = [made, &does] {
-        made->setEnabled(does.isEnabled());
-        made->setChecked(does.isChecked());
-    };
-    connect(made, &QToolButton::clicked, &does, [&does, followAction] {
-        does.trigger();
-        followAction(); // a click has checked it by itself
-    });
-    connect(&does, &QAction::changed, made, followAction);
-    followAction();
-    return made;
 }
 
 QLayout* PlayerPanel::adaptRow() {
@@ -268,7 +250,7 @@ QLayout* PlayerPanel::keyRow() {
                                                     {"nextKey", tr("key ›")},
                                                     {"fromHere", tr("Start from this frame")}};
     for (qsizetype i = 0; i < m_adapting.keyActions().size(); ++i)
-        row->addWidget(button(*m_adapting.keyActions()[i], keys[i].first, {}, keys[i].second));
+        row->addWidget(actionButton(*m_adapting.keyActions()[i], keys[i].first, keys[i].second, this));
     row->addStretch(1);
     return row;
 }

@@ -1,12 +1,12 @@
-#include "film/keyframes.h"
+#include "session/keyframes.h"
 
 #include <cmath>
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
-#include "film_scene.h"
 #include "render/camera_motion.h"
+#include "support/film_scene.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -166,13 +166,22 @@ TEST_CASE("projections do not mix: the way is the first key's", "[film]") {
     CHECK(cameraAt(keys, 1, g) == last);
 }
 
-TEST_CASE("keyframes are pictures from the first key to the last", "[film]") {
+TEST_CASE("a key that is moved onto another one comes after it, and order follows time", "[film]") {
     const Scene scene = filmScene();
-    const Geometry& g = scene.volume->geometry();
-    const auto shots = shotsOf(twoKeys(scene, 2), 5, g);
-    REQUIRE(shots.size() == 11); // at 0, 0.2 … 2 s
-    CHECK(*shots.back().time == Approx(2));
-    CHECK(shots.back().camera == twoKeys(scene, 2)[1].state.camera);
-    CHECK_THROWS_AS(shotsOf(Keyframes{}, 5, g), UsageError);
-    CHECK_THROWS_AS(shotsOf(twoKeys(scene, 3600), 120, g), UsageError); // 432 001 pictures
+    Keyframes keys{keyAt(0, scene, 10), keyAt(1, scene, 20), keyAt(2, scene, 30)};
+    const KeyState first = keys[0].state;
+    CHECK(moveKey(keys, 0, 1.5) == 1);
+    CHECK(keys[1].state == first);
+    CHECK(keys[1].time == 1.5);
+    CHECK(moveKey(keys, 1, 2) == 2); // another one is there
+    CHECK(keys.size() == 3);
+    CHECK(keys[2].state == first);
+    CHECK(keys[2].time == Approx(2.01));
+    CHECK(moveKey(keys, 2, -5) == 0);
+    CHECK(keys[0].time == 0);
+    // At the very end there is no later time.
+    CHECK(moveKey(keys, 2, 1e9) == 2);
+    CHECK(moveKey(keys, 0, 1e9) == 1);
+    CHECK(keys[2].time == kMostFilmSeconds);
+    CHECK(keys[1].time == Approx(kMostFilmSeconds - 0.01));
 }

@@ -1,4 +1,4 @@
-#include "film/keyframes.h"
+#include "session/keyframes.h"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "render/ray_box.h"
+#include "session/scene.h"
 #include "tf/tf_morph.h"
 #include "tf/tf_range.h"
 
@@ -16,7 +17,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kSameTime = 1e-9; ///< s
+constexpr double kSameTime = 1e-9; ///< s, of rounding
 constexpr double kRadians = std::numbers::pi / 180;
 
 double mix(double a, double b, double t) { return a + t * (b - a); }
@@ -267,14 +268,33 @@ Scene withKeyState(const Scene& scene, const KeyState& state) {
     return changed;
 }
 
+Scene sceneAtKey(const Scene& scene, const KeyState& state, const JobControl& job) {
+    if (state.frame == scene.session.frame) return withKeyState(scene, state);
+    Session session = scene.session;
+    session.frame = state.frame;
+    return withKeyState(resolve(std::move(session), scene, {}, job), state);
+}
+
 std::size_t putKey(Keyframes& keys, Keyframe key) {
-    const auto at = std::ranges::lower_bound(keys, key.time - kSameTime, {}, &Keyframe::time);
+    const auto at = std::ranges::lower_bound(keys, key.time - kSameKeyTime, {}, &Keyframe::time);
     const auto place = static_cast<std::size_t>(at - keys.begin());
-    if (at != keys.end() && at->time <= key.time + kSameTime)
+    if (at != keys.end() && at->time <= key.time + kSameKeyTime)
         *at = std::move(key);
     else
         keys.insert(at, std::move(key));
     return place;
+}
+
+std::size_t moveKey(Keyframes& keys, std::size_t n, double time, double step) {
+    Keyframe key = std::move(keys.at(n));
+    keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(n));
+    const auto isTaken = [&](double at) {
+        return std::ranges::any_of(keys, [&](const Keyframe& k) { return std::abs(k.time - at) < step / 2; });
+    };
+    key.time = std::clamp(time, 0.0, kMostFilmSeconds);
+    while (isTaken(key.time) && key.time + step <= kMostFilmSeconds) key.time += step;
+    while (isTaken(key.time)) key.time -= step; // at the very end
+    return putKey(keys, std::move(key));
 }
 
 KeyState stateAt(const Keyframes& keys, double time, const Geometry& geometry) {

@@ -1,16 +1,19 @@
 // Keyframes of a film: what is seen from where at certain times, and the way from one to the next.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/enum_names.h"
 #include "render/camera.h"
 #include "render/clipping.h"
 #include "render/render_settings.h"
-#include "session/scene.h"
 #include "tf/transfer_function.h"
 
 namespace pellucid {
+
+struct JobControl;
+struct Scene;
 
 /// How a film goes from a key to the next one.
 enum class Easing {
@@ -40,6 +43,8 @@ struct KeyState {
 KeyState keyStateOf(const Scene& scene);
 /// The scene with that of a key. `scene` is at the key's frame.
 Scene withKeyState(const Scene& scene, const KeyState& state);
+/// The same of a scene that may be at another frame, which is read then. Throws FileError, Cancelled.
+Scene sceneAtKey(const Scene& scene, const KeyState& state, const JobControl& job);
 
 struct Keyframe {
     double time = 0; ///< s, from 0 on
@@ -55,8 +60,14 @@ using Keyframes = std::vector<Keyframe>;
 inline constexpr double kMostFilmSeconds = 3600; ///< that a key may lie after the beginning
 inline constexpr std::size_t kMostKeyframes = 1000;
 
+/// Times that are nearer to each other than this are the same, s.
+inline constexpr double kSameKeyTime = 1e-6;
+
 /// Puts a key where its time says; one at the same time is replaced. Returns its place.
 std::size_t putKey(Keyframes& keys, Keyframe key);
+/// Gives key `n` another time, within 0 … kMostFilmSeconds; where another key is, it comes `step` seconds after it.
+/// Returns its new place.
+std::size_t moveKey(Keyframes& keys, std::size_t n, double time, double step = 0.01);
 
 /// What is seen at `time`; there are keys. At a key's time and beyond the ends exactly what the key has. Between two
 /// keys:

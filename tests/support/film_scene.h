@@ -1,7 +1,9 @@
-// A small scene that films are made of.
+// A small scene that films are made of, and keyframes.
 #pragma once
 
-#include "film/film.h"
+#include "render/standard_view.h"
+#include "session/keyframes.h"
+#include "session/scene.h"
 
 namespace pellucid::test {
 

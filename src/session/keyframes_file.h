@@ -5,7 +5,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "film/keyframes.h"
+#include "session/keyframes.h"
+#include "session/scene.h"
 
 namespace pellucid {
 
@@ -20,6 +21,9 @@ Keyframes readKeyframes(const std::string& path, const Scene& scene);
 nlohmann::json jsonFromKeyframes(const Keyframes& keys);
 /// Through a temporary file. Reading it back for the same data gives equal keys. Throws FileError.
 void writeKeyframes(const Keyframes& keys, const std::string& path);
+
+/// That keys fit the data of a scene: throws Error for a frame that the series has not, and a camera in the box.
+void checkKeyframes(const Keyframes& keys, const Scene& scene);
 
 /// What a command line may name: a *.film.json, or session files with semicolons between, which become keys at equal
 /// times over `seconds`, from rest to rest. Throws UsageError without a place, and as the others do.

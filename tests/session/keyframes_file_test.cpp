@@ -1,4 +1,4 @@
-#include "film/keyframes_file.h"
+#include "session/keyframes_file.h"
 
 #include <random>
 
@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
-#include "film_scene.h"
 #include "session/session_json.h"
+#include "support/film_scene.h"
 #include "support/temp_folder.h"
 
 using namespace pellucid;

@@ -1,4 +1,4 @@
-#include "film/keyframes_file.h"
+#include "session/keyframes_file.h"
 
 #include <filesystem>
 
@@ -76,27 +76,12 @@ void takeState(KeyState& state, const JsonValue& j, const std::string& folder, c
 
 Keyframes keyframesFromJson(const JsonValue& document, const std::string& folder, const Scene& scene) {
     requireFormat(document, kFormat, kVersion, "give a film of keyframes");
-    const std::vector<JsonValue> items = document["keys"].items();
-    if (items.empty()) document["keys"].fail("a film needs a key at least", "add one");
-    if (items.size() > kMostKeyframes) document["keys"].fail("these are too many keys");
-    Keyframes keys;
+    if (document["keys"].items().empty()) document["keys"].fail("a film needs a key at least", "add one");
     KeyState state = keyStateOf(scene);
-    for (const JsonValue& item : items) {
-        Keyframe key;
-        key.time = item["time"].number(0, kMostFilmSeconds);
-        if (!keys.empty() && !(key.time > keys.back().time + 1e-6))
-            item["time"].fail("a key must come later than the one before", "sort the keys by time");
-        if (item.has("name")) key.name = item["name"].text();
-        if (item.has("easing")) {
-            const auto easing = findNamed<Easing>(item["easing"].text());
-            if (!easing) item["easing"].fail("no such easing", "write linear, smooth, ease-in, ease-out or hold");
-            key.easing = *easing;
-        }
-        takeState(state, item, folder, scene);
-        key.state = state;
-        keys.push_back(std::move(key));
-    }
-    return keys;
+    return keysFromJson(document["keys"], [&](const JsonValue& key) {
+        takeState(state, key, folder, scene);
+        return state;
+    });
 }
 
 Keyframes readKeyframes(const std::string& path, const Scene& scene) {
@@ -105,23 +90,15 @@ Keyframes readKeyframes(const std::string& path, const Scene& scene) {
 }
 
 json jsonFromKeyframes(const Keyframes& keys) {
-    json j{{"format", kFormat}, {"version", kVersion}, {"keys", json::array()}};
-    for (const Keyframe& key : keys) {
-        json one{{"time", key.time},
-                 {"easing", name(key.easing)},
-                 {"camera", jsonFromWholeCamera(key.state.camera)},
-                 {"tf", jsonFromTf(key.state.tf, Identities::Keep)},
-                 {"clip", jsonFromClipping(key.state.clipping)},
-                 {"light", jsonFromLight(key.state.light)},
-                 {"frame", key.state.frame}};
-        if (!key.name.empty()) one["name"] = key.name;
-        j["keys"].push_back(std::move(one));
-    }
-    return j;
+    return {{"format", kFormat}, {"version", kVersion}, {"keys", jsonFromKeys(keys)}};
 }
 
 void writeKeyframes(const Keyframes& keys, const std::string& path) {
     writeTextAtomically(path, jsonFromKeyframes(keys).dump(1) + "\n");
+}
+
+void checkKeyframes(const Keyframes& keys, const Scene& scene) {
+    for (std::size_t n = 0; n < keys.size(); ++n) check(keys[n].state, scene, "key " + std::to_string(n + 1));
 }
 
 bool isFilmFile(const std::string& text) {
