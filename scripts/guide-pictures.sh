@@ -75,8 +75,8 @@ picture fields "${shells[@]}" set:clipYLo=50 panel:fields "set:fieldKindCombo=Vi
 picture picture_saliency "${knee[@]}" panel:pictureSaliency followPictureAction \
     "set:pictureSaliencyMap=The whole picture"
 picture compare "${knee[@]}" targetsInsideOut optimizeAction compareRunAction compareSideBySideAction panel:compare
-picture tf_editor "${shells[@]}" jointHistogram select:1 wheel:tfCanvas=0,0.5,2 drag:tfCanvas=0.4,0.3,0.62,0.8 \
-    over:tfCanvas=0.55,0.4 of:tfDock
+picture tf_editor "${shells[@]}" jointHistogram select:1 wheel:tfCanvas=0.05,0.5,1 drag:tfCanvas=0.39,0.25,0.55,0.8 \
+    over:tfCanvas=0.57,0.4 of:tfDock
 picture color_vision --sample-size 96 sample:knee visionDeuteranopiaAction
 picture refiner --size 1280x860 sample:knee set:clipYLo=50 "set:refineMethodCombo=Exact" panel:refinement \
     rectangleAction drag:volumeView=0.474,0.43,0.526,0.475

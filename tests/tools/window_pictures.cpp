@@ -79,20 +79,21 @@ T& found(MainWindow& window, const QString& name) {
     return *child;
 }
 
-bool isAtWork(const MainWindow& window) {
-    if (!window.isSettled()) return true;
+/// What shows a progress bar, such as the best view, is done, too.
+bool isDone(const MainWindow& window) {
     const auto bars = window.findChildren<QProgressBar*>();
-    return std::any_of(bars.begin(), bars.end(), [](const QProgressBar* bar) { return bar->isVisible(); });
+    return window.isSettled() && !window.findChild<TfCanvas*>()->isCounting() &&
+           std::none_of(bars.begin(), bars.end(), [](const QProgressBar* bar) { return bar->isVisible(); });
 }
 
 /// Panels arrange themselves, and what they ask for comes.
-void settle(MainWindow& window) {
+template <class Condition>
+void settle(const Condition& isSettled) {
     do {
         QTest::qWait(kRest);
-        if (!QTest::qWaitFor([&] { return !isAtWork(window); }, kPatience))
-            throw std::runtime_error("it does not come to rest");
+        if (!QTest::qWaitFor(isSettled, kPatience)) throw std::runtime_error("it does not come to rest");
         QTest::qWait(kRest);
-    } while (isAtWork(window));
+    } while (!isSettled());
 }
 
 void put(QWidget& control, const QString& value) {
@@ -303,13 +304,14 @@ void takePanels(MainWindow& window, const QString& prefix) {
     Camera camera = window.services().scene().camera; // from far away, so that the picture takes no time
     camera.eye = camera.center + 8.0 * (camera.eye - camera.center);
     window.services().store().setCamera(camera);
+    const auto atRest = [&] { return window.isSettled(); }; // how far panels are is no matter
     for (const PanelInfo& panel : panelRegistry()) {
         window.room().reset();
-        settle(window);
+        settle(atRest);
         auto& dock = found<QDockWidget>(window, QString(panel.id) + "Dock");
         if (!dock.isVisible() || dock.visibleRegion().isEmpty())
             found<QAction>(window, QString(panel.id) + "Action").trigger();
-        settle(window);
+        settle(atRest);
         save({prefix + "-" + panel.id + ".png", &window}, window);
         for (const QString& text : cutTexts(dock) + overlaps(dock) + scrolledSideways(dock))
             std::printf("%s: %s\n", panel.id, text.toUtf8().constData());
@@ -335,12 +337,13 @@ void run(const QCommandLineParser& parser) {
     const QStringList size = parser.value("size").split('x');
     window.resize(size.at(0).toInt(), size.at(1).toInt());
     window.show();
+    const auto isReady = [&] { return isDone(window); };
     openFirst(window, words.front(), parser);
-    settle(window);
+    settle(isReady);
     Output out{parser.value("out"), &window};
     for (const QString& step : words.mid(1)) {
         take(window, out, step);
-        settle(window);
+        settle(isReady);
     }
     if (parser.isSet("panels")) takePanels(window, parser.value("panels"));
     if (parser.isSet("areas")) printAreas(window);
