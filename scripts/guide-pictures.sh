@@ -63,29 +63,29 @@ picture window_opened "${shells[@]}"
 picture tour --sample-size 64 sample:shells tourAction click:tourNext
 picture window_optimized "${shells[@]}" targets:1,2,3 optimizeAction
 picture convergence --sample-size 24 --tf tents:3 sample:shells targets:1,3,6 "set:methodCombo=Fixed step" \
-    optimizeAction panel:convergence click:showStart "set:methodCombo=Parallel line search" optimizeAction
-picture window_influence "${knee[@]}" panel:influence
+    set:mostMovesSpin=20 optimizeAction convergenceAction click:showStart "set:methodCombo=Parallel line search" optimizeAction
+picture window_influence "${knee[@]}" influenceAction
 picture targets "${knee[@]}" targetsDiagonal key:targetBars=L liveTargetsAction
-picture window_clip "${shells[@]}" panel:clip addPlaneAction view:95,30,1.66
-picture window_display "${shells[@]}" set:clipXHi=55 panel:display
+picture window_clip "${shells[@]}" clipAction addPlaneAction view:95,30,1.66
+picture window_display "${shells[@]}" set:clipXHi=55 displayAction
 picture probe "${knee[@]}" at:volumeView=0.52,0.52
-picture best_view "${knee[@]}" panel:views
+picture best_view "${knee[@]}" viewsAction
 picture slices "${knee[@]}" layoutFourAction
-picture fields "${shells[@]}" set:clipYLo=50 panel:fields "set:fieldKindCombo=Visibility-weighted saliency"
-picture picture_saliency "${knee[@]}" panel:pictureSaliency followPictureAction \
+picture fields "${shells[@]}" set:clipYLo=50 fieldsAction "set:fieldKindCombo=Visibility-weighted saliency"
+picture picture_saliency "${knee[@]}" pictureSaliencyAction followPictureAction \
     "set:pictureSaliencyMap=The whole picture"
-picture compare "${knee[@]}" targetsInsideOut optimizeAction compareRunAction compareSideBySideAction panel:compare
+picture compare "${knee[@]}" targetsInsideOut optimizeAction compareRunAction compareSideBySideAction compareAction
 picture tf_editor "${shells[@]}" jointHistogram select:1 wheel:tfCanvas=0.05,0.5,1 drag:tfCanvas=0.39,0.25,0.55,0.8 \
     over:tfCanvas=0.57,0.4 of:tfDock
 picture color_vision --sample-size 96 sample:knee visionDeuteranopiaAction
-picture refiner --size 1280x860 sample:knee set:clipYLo=50 "set:refineMethodCombo=Exact" panel:refinement \
+picture refiner --size 1280x860 sample:knee set:clipYLo=50 "set:refineMethodCombo=Exact" refinementAction \
     rectangleAction drag:volumeView=0.474,0.43,0.526,0.475
 picture parameter_space --size 1280x900 --sample-size 64 --tf tents:3 sample:shells targets:1,3,6 \
     "set:methodCombo=Parallel line search" optimizeAction undoAction "set:methodCombo=Fixed step" optimizeAction \
-    panel:space click:spaceCompute
+    spaceAction click:spaceCompute
 series=(--size 1280x860 --sample-size 64 --frames 0:98:2 sample:vortex optimizeAction adaptOptimizeAction frame:20)
 picture player "${series[@]}"
-picture curves_over_time "${series[@]}" panel:temporal height:temporal=260 click:temporalMeasure
+picture curves_over_time "${series[@]}" temporalAction height:temporal=260 click:temporalMeasure
 
 if wants raw_dialog; then
     made_up
@@ -98,7 +98,7 @@ fi
 if wants overlay nifti/ch2.nii.gz; then
     made_up
     window overlay --size 1400x860 "$data/nifti/ch2.nii.gz" "overlay:$scratch/data/tmap.nrrd" set:overlayThreshold=3.1 \
-        set:overlayOpacity=0.3 set:clipZHi=55 panel:overlay layoutFourAction crosshair:44,-14,28 view:40,50,1.6
+        set:overlayOpacity=0.3 set:clipZHi=55 overlayAction layoutFourAction crosshair:44,-14,28 view:40,50,1.6
 fi
 
 # ---- several variables: the pictures carry their sessions, the last of which the window opens
@@ -116,7 +116,7 @@ if wants variables_smoke; then variables smoke "${smoke[@]}"; fi
 if wants variables_hurricane; then variables hurricane "${hurricane[@]}"; fi
 if wants variables; then
     "$cli" render sample:hurricane "${hurricane[@]}" --shading --size 64x48 --out "$scratch/session.png" >/dev/null
-    window variables --size 1280x860 "$scratch/session.png" panel:variables
+    window variables --size 1280x860 "$scratch/session.png" variablesAction
 fi
 
 # ---- the command line

@@ -6,7 +6,6 @@
 //
 // DOCUMENT is opened as the window opens it: a volume, a session, or a picture that carries one. A STEP is the name of
 // an action, which is triggered, or one of
-//     panel:ID            a panel is opened, in front
 //     click:NAME          a press on a button
 //     set:NAME=VALUE      a number, a choice or a text into a control
 //     key:NAME=KEY        a key on a widget, such as L or Ctrl+A
@@ -211,7 +210,6 @@ using Step = std::function<void(MainWindow&, Output&, const QString&)>;
 
 const std::map<QString, Step>& steps() {
     static const std::map<QString, Step> all{
-        {"panel", [](MainWindow& w, Output&, const QString& id) { w.services().panels().show(id); }},
         {"click", [](MainWindow& w, Output&, const QString& name) { found<QAbstractButton>(w, name).click(); }},
         {"set",
          [](MainWindow& w, Output&, const QString& words) {
