@@ -142,7 +142,7 @@ if wants share; then
 import sys
 from drive_page import Browser
 browser, scratch, out = sys.argv[1:]
-with Browser(browser, scratch + "/profile", width=825, height=600) as page:
+with Browser(browser, scratch + "/profile", width=900, height=740) as page:
     page.open(scratch + "/page.html")
     page.value("window.pellucid.settled()")
     page.screenshot(out)
