@@ -26,7 +26,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 mkdir -p "$out"
 cmake --build "$build" --target window_pictures guide_data pellucid-cli >/dev/null
-for program in convert montage pdftoppm; do
+for program in convert montage mogrify pdftoppm; do
     command -v "$program" >/dev/null || { echo "guide-pictures: install imagemagick and poppler-utils" >&2; exit 1; }
 done
 
@@ -107,9 +107,9 @@ variables() { # SAMPLE OPTION…
     "$cli" render "sample:$1" "${@:2}" --shading --size 640x480 --out "$scratch/$1.png" >/dev/null
     convert "$scratch/$1.png" -strip "$out/variables_$1.png"
 }
-vortex=(--frame 40 --view 30,15,1.2 --hsb saturation=volatility:x:10,brightness=gradient:x,b=1)
-smoke=(--frame 90 --view 30,5,1.4 --hsb saturation=volatility:x:10,brightness=gradient:x,a=10,b=1.5)
-hurricane=(--frame 30 --view 20,40,1.5 --variable precipitation=sample:hurricane/precipitation
+vortex=(--tf auto --frame 40 --view 30,15,1.2 --hsb saturation=volatility:x:10,brightness=gradient:x,b=1)
+smoke=(--tf auto --frame 90 --view 30,5,1.4 --hsb saturation=volatility:x:10,brightness=gradient:x,a=10,b=1.5)
+hurricane=(--tf auto --frame 30 --view 20,40,1.5 --variable precipitation=sample:hurricane/precipitation
     --hsb saturation=volatility:x:10,brightness=precipitation,b=8 --ground sample:hurricane/ground)
 if wants variables_vortex; then variables vortex "${vortex[@]}"; fi
 if wants variables_smoke; then variables smoke "${smoke[@]}"; fi
@@ -199,6 +199,7 @@ if wants refinement tooth/tooth.mhd cranium_ct/cranium_ct.nrrd; then
     for tf in tents:6 ramp:6; do
         refined "$data/cranium_ct/cranium_ct.nrrd" "$tf" 96,150,101,190 --view superior --clip z:0:0.6
     done
+    mogrify -gravity center -crop 236x236+0+0 +repage "${cells[@]}"
     sheet refinement 8 160x160 "${cells[@]}"
 fi
 if wants refinement_proposal tooth/tooth.mhd cranium_ct/cranium_ct.nrrd; then
