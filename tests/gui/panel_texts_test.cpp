@@ -1,5 +1,5 @@
-// Every panel at 1280 x 800: its texts have room, and nothing lies on top of something else; at the scale of 1 and, in
-// a process of its own, of 2.
+// Every panel at 1280 x 800: its texts have room, nothing lies on top of something else, and nothing must be scrolled
+// sideways; at the scale of 1 and, in processes of their own, of 2 and 3.
 #include "gui_support.h"
 
 #include <QCoreApplication>
@@ -48,6 +48,7 @@ void checkPanels() {
         CHECK(dock.isVisible());
         CHECK(cutTexts(dock).join("\n").toStdString() == "");
         CHECK(overlaps(dock).join("\n").toStdString() == "");
+        CHECK(scrolledSideways(dock).join("\n").toStdString() == "");
     }
     QSettings().clear();
 }
@@ -90,11 +91,33 @@ TEST_CASE("a text that is cut off is found", "[layout]") {
     CHECK(cutTexts(parent).size() == 1);
 }
 
+TEST_CASE("what must be scrolled sideways is found", "[layout]") {
+    QWidget parent;
+    parent.setObjectName("narrow");
+    auto* area = new QScrollArea(&parent);
+    auto* content = new QWidget;
+    content->setMinimumWidth(300);
+    area->setWidget(content);
+    area->setWidgetResizable(true);
+    area->setFrameShape(QFrame::NoFrame);
+    area->setGeometry(0, 0, 260, 100);
+    parent.show();
+    QTest::qWait(20);
+    CHECK(scrolledSideways(parent) == QStringList{"narrow: 40"});
+    area->resize(300, 100);
+    QTest::qWait(20);
+    CHECK(scrolledSideways(parent).isEmpty());
+}
+
 TEST_CASE("the texts of every panel have room at 1280 x 800", "[layout][panel-texts]") { checkPanels(); }
 
 TEST_CASE("the texts of every panel have room at twice the scale", "[layout][panel-texts][program]") {
     checkAtScale("2");
 }
 
-// Started by the one above.
+TEST_CASE("the texts of every panel have room at three times the scale", "[layout][panel-texts][program]") {
+    checkAtScale("3");
+}
+
+// Started by those above.
 TEST_CASE("the texts of every panel have room at the scale of this process", "[.][panel-texts-here]") { checkPanels(); }

@@ -674,41 +674,6 @@ TEST_CASE("a session with a series comes back at its frame", "[player]") {
     CHECK(largestDifference(other.picture(), before) <= 4); // of 255: a slow machine draws rays in portions
 }
 
-// By hand, as in pictures_test.cpp.
-TEST_CASE("pictures of a series for the guide", "[.pictures]") {
-    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
-    OpenWindow w;
-    w.window.resize(1280, 860);
-    VolumeSource source;
-    source.path = "sample:vortex";
-    source.sampleSize = 64;
-    source.frames = FrameRange{0, 98, 2};
-    w.open(source);
-    w.settle();
-    const auto grab = [&](const char* name) {
-        w.settle();
-        QTest::qWait(300); // docks arrange themselves
-        w.settle();
-        REQUIRE(w.window.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + name));
-    };
-    PlayerController& player = w.controllers().player;
-    REQUIRE(waitFor([&] { return player.knownCount() == player.frameCount(); }));
-    w.optimizing().start();
-    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
-    w.controllers().adapting.setMode(AdaptSettings::Mode::Optimize);
-    w.controllers().adapting.setCoherence(0.3);
-    w.settle();
-    player.goTo(20);
-    w.settle();
-    grab("player.png");
-    w.services().panels().show("temporal");
-    w.window.resizeDocks({&w.child<QDockWidget>("temporalDock")}, {260}, Qt::Vertical);
-    w.child<QToolButton>("temporalMeasure").click();
-    auto& panel = *w.window.findChild<TemporalPanel*>();
-    REQUIRE(waitFor([&] { return panel.knownCount() == player.frameCount(); }));
-    grab("curves_over_time.png");
-}
-
 TEST_CASE("the playhead of a film goes to the frames of its keys, with what belongs to them", "[player][keyframes]") {
     SeriesWindow w;
     KeyframesController& keyframes = w.controllers().keyframes;

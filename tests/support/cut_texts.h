@@ -11,6 +11,8 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QRadioButton>
+#include <QScrollArea>
+#include <QScrollBar>
 #include <QStringList>
 #include <QStyle>
 #include <QStyleOptionComboBox>
@@ -98,12 +100,11 @@ inline RoomForText roomOfText(const QWidget& widget) {
     return {};
 }
 
-/// "densityLabel 'Density': 40 x 14 of 38 x 16" of each text in `root` that is shown and cut off. What its layout gives
-/// no height at all is not shown.
+/// "densityLabel 'Density': 40 x 14 of 38 x 16" of each text in `root` that is shown and cut off.
 inline QStringList cutTexts(const QWidget& root) {
     QStringList cut;
     for (const QWidget* widget : root.findChildren<QWidget*>()) {
-        if (!widget->isVisible() || widget->height() == 0 || FittingRow::isLeftOut(*widget)) continue; // not shown
+        if (!widget->isVisible() || FittingRow::isLeftOut(*widget)) continue;
         const RoomForText room = roomOfText(*widget);
         if (room.isCut())
             cut << QStringLiteral("%1 '%2': %3 x %4 of %5 x %6")
@@ -116,6 +117,18 @@ inline QStringList cutTexts(const QWidget& root) {
                        .arg(room.givenHeight);
     }
     return cut;
+}
+
+/// "displayPanel: 40" of each part of `root` that must be scrolled sideways to be seen, and by how many logical pixels.
+/// Lists and tables, which are as wide as their texts, are left out.
+inline QStringList scrolledSideways(const QWidget& root) {
+    QStringList found;
+    for (const QScrollArea* area : root.findChildren<QScrollArea*>())
+        if (area->isVisible() && area->horizontalScrollBar()->maximum() > 0)
+            found << QStringLiteral("%1: %2")
+                         .arg(area->parentWidget()->objectName())
+                         .arg(area->horizontalScrollBar()->maximum());
+    return found;
 }
 
 /// Pairs of controls beside each other in one parent that overlap.

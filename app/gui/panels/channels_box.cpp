@@ -33,8 +33,10 @@ const std::array kTitles{QT_TR_NOOP("Opacity"), QT_TR_NOOP("Saturation"), QT_TR_
 ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* parent)
     : QWidget(parent), m_services(services), m_opening(opening) {
     setObjectName("channelsBox");
-    auto* form = narrowForm(inset(new QFormLayout(this), {}));
+    auto* form = narrowForm(new QFormLayout);
     form->setVerticalSpacing(6);
+    // Below the form, not in it: of wrapped rows Qt takes the height of the last one for that of a hidden one after it.
+    setLayout(inset(columnOf({form, m_note}, 6), {}));
     for (QSpinBox* box : {m_featureFrames, m_frames}) {
         box->setRange(1, kMostFrames);
         box->setKeyboardTracking(false);
@@ -67,7 +69,6 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
     form->addRow(QString(), m_swap);
     addChannel(*form, Channel::Hue, "hsbHue", tr("Hue ←"), tr("One hue for all, or one for each value of a variable"));
     addHue(*form);
-    form->addRow(m_note);
 
     connect(m_on, &QCheckBox::clicked, this, &ChannelsBox::setOn);
     connect(m_frames, &QSpinBox::valueChanged, this, [this](int frames) {

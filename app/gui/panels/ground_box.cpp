@@ -13,6 +13,7 @@
 #include "tf/terrain.h"
 #include "volume/procedural.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 
 namespace pellucid::gui {
@@ -32,7 +33,7 @@ private:
     OpenController& m_opening;
     QCheckBox* m_shown = named(new QCheckBox(tr("&Ground"), this), "groundShown",
                                tr("A height field under the volume; figures do not depend on it"));
-    QLabel* m_file = withAnyWidth(named(new QLabel(this), "groundFile"));
+    QLabel* m_file = withAnyWidth(named(new ElidedLabel(this), "groundFile"));
     QToolButton* m_choose = named(menuButton(tr("Choose"), this), "groundChoose",
                                   tr("Heights: a volume of one layer, over the whole box of the data"));
     QPushButton* m_remove = named(new QPushButton(tr("Remove"), this), "groundRemove", tr("Take the ground away"));
@@ -48,7 +49,8 @@ GroundBox::GroundBox(Services& services, OpenController& opening) : m_services(s
         m_colorMap->addItem(QString::fromStdString(name), QString::fromStdString(name));
     auto* form = narrowForm(inset(new QFormLayout(this), {}));
     form->setVerticalSpacing(6);
-    form->addRow(rowOf({m_shown, {m_file, 1}, m_choose, m_remove}));
+    form->addRow(rowOf({m_shown, {m_file, 1}}));
+    form->addRow(rowOf({m_choose, m_remove, Cell::rest()}));
     form->addRow(tr("Colours"), m_colorMap);
     auto* scale = new SettingRows(m_services, *form, settingPart<GroundView>(&Session::ground));
     scale->setCommit([this](const QString& text, const QString&, const SessionStore::Change& change) {

@@ -10,6 +10,7 @@
 #include "panels/setting_rows.h"
 #include "render/picture_shares.h"
 #include "widgets/controls.h"
+#include "widgets/elided.h"
 #include "widgets/layouts.h"
 #include "widgets/theme.h"
 
@@ -33,7 +34,7 @@ private:
     OverlayController& m_overlays;
     QCheckBox* m_shown = named(new QCheckBox(tr("&Overlay"), this), "overlayShown",
                                tr("Draw the second volume over the first; figures do not depend on it"));
-    QLabel* m_file = withAnyWidth(named(new QLabel(this), "overlayFile"));
+    QLabel* m_file = withAnyWidth(named(new ElidedLabel(this), "overlayFile"));
     QPushButton* m_choose = named(new QPushButton(tr("Choose…"), this), "overlayChoose",
                                   tr("A second volume over this one, where both lie in the world"));
     QPushButton* m_remove =

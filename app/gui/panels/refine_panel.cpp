@@ -83,6 +83,7 @@ void EdgeBars::paintEvent(QPaintEvent*) {
     painter.drawLine(QPointF(kMargin, height() - 6), QPointF(width() - kMargin, height() - 6));
     if (!(most > 0)) return;
     painter.setRenderHint(QPainter::Antialiasing);
+    painter.setBrush(Qt::NoBrush);
     const auto heightOf = [&](double weight, const QRectF& r) { return std::sqrt(weight / most) * r.height(); };
     for (std::size_t i = 0; i < m_bars.size(); ++i) {
         const Bar& bar = m_bars[i];
@@ -96,8 +97,12 @@ void EdgeBars::paintEvent(QPaintEvent*) {
             painter.drawLine(pale.topLeft(), pale.topRight());
         }
         const double h = heightOf(bar.weight, r), in = bar.before ? 0.22 * r.width() : gap;
-        painter.fillRect(QRectF(r.left() + in, r.bottom() - h, r.width() - 2 * in, h),
-                         translucent(bar.color, bar.participates ? 1 : 0.45));
+        const QRectF box(r.left() + in, r.bottom() - h, r.width() - 2 * in, h);
+        painter.fillRect(box, translucent(bar.color, bar.participates ? 1 : 0.45));
+        if (contrast(theme::kPanel, bar.color) < kMarkContrast && h > 1) { // nearly white on white
+            painter.setPen(QPen(seenOn(theme::kPanel, bar.color), 1));
+            painter.drawRect(box.adjusted(0.5, 0.5, -0.5, -0.5));
+        }
     }
     if (participating > 0) { // what all of them would be, were they equal
         const QRectF r = cell(0);

@@ -93,7 +93,8 @@ void SpaceCanvas::draw() {
     m_view.width = static_cast<int>(std::lround(width() * density));
     m_view.height = static_cast<int>(std::lround(height() * density));
     m_view.density = density;
-    if (!m_space->isFlat()) m_view.camera = spaceCamera(*m_space, m_azimuth, m_elevation, m_zoom);
+    const double narrow = std::min(1.0, static_cast<double>(width()) / height()); // the zoom is of the height
+    if (!m_space->isFlat()) m_view.camera = spaceCamera(*m_space, m_azimuth, m_elevation, m_zoom * narrow);
     m_job.start({m_space, m_view, m_volume}, tr("the parameter space"));
 }
 

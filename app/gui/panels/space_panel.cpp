@@ -41,6 +41,7 @@ PanelInfo spacePanel() {
             .title = QObject::tr("Parameter space"),
             .group = PanelGroup::Shares,
             .visible = false,
+            .tabOf = "features",
             .keys = QKeySequence("Ctrl+Shift+P"),
             .tip =
                 QObject::tr("Attention and the distance from the targets over the opacities of two or three features"),
@@ -101,12 +102,16 @@ SpacePanel::SpacePanel(Services& services, QWidget* parent)
     m_reading->setMinimumHeight(2 * fontMetrics().lineSpacing()); // so that nothing moves below the mouse
     m_reading->setAlignment(Qt::AlignLeft | Qt::AlignTop);
 
-    auto* form = new QFormLayout;
-    form->addRow(tr("Axes"), rowOf({{m_features[0], 1}, {m_features[1], 1}, {m_features[2], 1}}));
-    form->addRow(tr("Samples"), rowOf({m_samples, {m_scale, 1}, {m_factor, 1}}));
+    auto* form = narrowForm(new QFormLayout);
+    form->addRow(tr("x axis"), m_features[0]);
+    form->addRow(tr("y axis"), m_features[1]);
+    form->addRow(tr("z axis"), m_features[2]);
+    form->addRow(tr("Samples"), rowOf({m_samples, {m_scale, 1}}));
+    form->addRow(tr("Volume"), m_factor);
     form->addRow(tr("Show"), m_shown);
-    auto* buttons = rowOf({m_compute, m_cancel, {m_progress, 1}, m_least, m_save});
-    setLayout(inset(columnOf({form, buttons, m_words, {m_canvas, 1}, m_reading}), {8, 8, 8, 8}));
+    auto* computing = rowOf({{m_compute, 1}, m_cancel, {m_progress, 1}});
+    setLayout(inset(columnOf({form, computing, rowOf({{m_least, 1}, m_save}), m_words, {m_canvas, 1}, m_reading}),
+                    {8, 8, 8, 8}));
 
     connect(m_compute, &QPushButton::clicked, this, &SpacePanel::compute);
     connect(m_cancel, &QPushButton::clicked, this, &SpacePanel::cancel);

@@ -63,6 +63,7 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
     m_progress->setMaximumSize(120, 12);
     m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
     makeFaint(*m_readOut);
+    m_readOut->hide();
     auto* row = rowOf({m_shown, m_overGaps, m_measure, m_progress, {m_words, 3}, {m_readOut, 2}, m_export});
     setLayout(inset(columnOf({{plots, 1}, row}, 2), {4, 4, 4, 2}));
 
@@ -137,7 +138,10 @@ QLayout* TemporalPanel::makePlots() {
     QHBoxLayout* const row = rowOf({});
     for (std::size_t i = 0; i < m_plots.size(); ++i) {
         PlotView* const plot = m_plots[i] = named(new PlotView(this), plots[i].first, plots[i].second);
-        connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
+        connect(plot, &PlotView::readOut, m_readOut, [label = m_readOut](const QString& text) {
+            label->setText(text);
+            label->setVisible(!text.isEmpty()); // while it says nothing the words beside it have its room
+        });
         connect(plot, &PlotView::exportWanted, this, &TemporalPanel::chooseFile);
         row->addWidget(plot, 1);
     }

@@ -70,6 +70,9 @@ ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget
     m_figure->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     m_words->setTextInteractionFlags(Qt::TextSelectableByMouse);
     m_progress->setFixedHeight(6);
+    QSizePolicy keptRoom = m_progress->sizePolicy(); // so that nothing moves where a search begins or ends
+    keptRoom.setRetainSizeWhenHidden(true);
+    m_progress->setSizePolicy(keptRoom);
     setLayout(inset(columnOf({m_figure, {m_globe, 1}, m_progress, m_words, rowOf({m_look, m_go}), m_optimize}),
                     {8, 8, 8, 8}));
 
@@ -175,9 +178,8 @@ void ViewsPanel::refresh() {
     m_globe->setMap(search.map(), search.isCurrent() || search.isRunning(), best);
     if (store.hasVolume()) m_globe->setCamera(store.scene().camera, store.scene().volume->geometry().worldAxes);
     m_globe->setEnabled(store.hasVolume());
-    m_progress->setValue(search.isRunning() || search.isOptimizing() ? static_cast<int>(100 * search.progress())
-                         : current                                   ? 100
-                                                                     : 0);
+    m_progress->setVisible(search.isRunning() || search.isOptimizing());
+    m_progress->setValue(static_cast<int>(100 * search.progress()));
     m_words->setText(words());
     m_look->setText(search.isRunning() ? tr("Stop") : tr("Look"));
     m_look->setToolTip(search.isRunning() ? tr("Stops the search; nothing else changes")
