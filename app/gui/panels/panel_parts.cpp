@@ -28,7 +28,6 @@ QIcon iconOf(const ColorMap& map) {
 
 QToolButton* actionButton(QAction& does, const char* name, const QString& text, QWidget* parent) {
     QToolButton* const made = named(toolButton(text, parent), name, does.toolTip());
-    made->setAutoRaise(true);
     made->setAccessibleName(does.toolTip());
     made->setCheckable(does.isCheckable());
     const auto followAction = [made, &does] {

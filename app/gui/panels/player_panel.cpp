@@ -197,6 +197,7 @@ QLayout* PlayerPanel::playRow() {
              {does.backward, "playBackward", Sign::Back}}) {
         QToolButton* const made = actionButton(*action, name, {}, this);
         made->setIcon(signOf(sign));
+        made->setAutoRaise(true);
         if (sign == Sign::Play) m_play = made;
         row->addWidget(made);
     }
@@ -249,8 +250,11 @@ QLayout* PlayerPanel::keyRow() {
                                                     {"previousKey", tr("‹ key")},
                                                     {"nextKey", tr("key ›")},
                                                     {"fromHere", tr("Start from this frame")}};
-    for (qsizetype i = 0; i < m_adapting.keyActions().size(); ++i)
-        row->addWidget(actionButton(*m_adapting.keyActions()[i], keys[i].first, keys[i].second, this));
+    for (qsizetype i = 0; i < m_adapting.keyActions().size(); ++i) {
+        auto* const made = actionButton(*m_adapting.keyActions()[i], keys[i].first, keys[i].second, this);
+        made->setAutoRaise(true);
+        row->addWidget(made);
+    }
     row->addStretch(1);
     return row;
 }
