@@ -85,7 +85,8 @@ picture parameter_space --size 1280x900 --sample-size 64 --tf tents:3 sample:she
     spaceAction click:spaceCompute
 series=(--size 1280x860 --sample-size 64 --frames 0:98:2 sample:vortex optimizeAction adaptOptimizeAction frame:20)
 picture player "${series[@]}"
-picture curves_over_time "${series[@]}" temporalAction height:temporal=260 click:temporalMeasure
+picture curves_over_time "${series[@]}" set:coherence=0 playerAction temporalAction height:temporal=260 \
+    click:temporalMeasure
 
 if wants raw_dialog; then
     made_up
