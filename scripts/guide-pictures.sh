@@ -79,7 +79,7 @@ picture tf_editor "${shells[@]}" jointHistogram select:1 wheel:tfCanvas=0.05,0.5
     over:tfCanvas=0.57,0.4 of:tfDock
 picture color_vision "${knee[@]}" visionDeuteranopiaAction
 picture refiner --size 1280x860 sample:knee set:clipYLo=50 "set:refineMethodCombo=Exact" refinementAction \
-    rectangleAction drag:volumeView=0.474,0.43,0.526,0.475
+    rectangleAction drag:volumeView=0.474,0.39,0.526,0.435
 picture parameter_space --size 1280x900 --sample-size 64 --tf tents:3 sample:shells targets:1,3,6 \
     "set:methodCombo=Parallel line search" optimizeAction undoAction "set:methodCombo=Fixed step" optimizeAction \
     spaceAction click:spaceCompute
