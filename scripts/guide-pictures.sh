@@ -77,15 +77,16 @@ picture picture_saliency "${knee[@]}" pictureSaliencyAction followPictureAction 
 picture compare "${knee[@]}" targetsInsideOut optimizeAction compareRunAction compareSideBySideAction compareAction
 picture tf_editor "${shells[@]}" jointHistogram select:1 wheel:tfCanvas=0.05,0.5,1 drag:tfCanvas=0.39,0.25,0.55,0.8 \
     over:tfCanvas=0.57,0.4 of:tfDock
-picture color_vision --sample-size 96 sample:knee visionDeuteranopiaAction
+picture color_vision "${knee[@]}" visionDeuteranopiaAction
 picture refiner --size 1280x860 sample:knee set:clipYLo=50 "set:refineMethodCombo=Exact" refinementAction \
-    rectangleAction drag:volumeView=0.474,0.43,0.526,0.475
+    rectangleAction drag:volumeView=0.474,0.39,0.526,0.435
 picture parameter_space --size 1280x900 --sample-size 64 --tf tents:3 sample:shells targets:1,3,6 \
     "set:methodCombo=Parallel line search" optimizeAction undoAction "set:methodCombo=Fixed step" optimizeAction \
     spaceAction click:spaceCompute
 series=(--size 1280x860 --sample-size 64 --frames 0:98:2 sample:vortex optimizeAction adaptOptimizeAction frame:20)
 picture player "${series[@]}"
-picture curves_over_time "${series[@]}" temporalAction height:temporal=260 click:temporalMeasure
+picture curves_over_time "${series[@]}" set:coherence=0 playerAction temporalAction height:temporal=260 \
+    click:temporalMeasure
 
 if wants raw_dialog; then
     made_up
