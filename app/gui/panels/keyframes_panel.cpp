@@ -129,8 +129,8 @@ QLayout* KeyframesPanel::keyRow() {
     for (const Easing easing : kEasings)
         addItem(*m_easing, easingText(easing), static_cast<int>(easing), tipOf(easing));
     m_key->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    m_key->setMinimumContentsLength(14);
-    m_name->setMinimumWidth(60);
+    m_key->setMinimumContentsLength(8);
+    m_name->setMinimumWidth(48);
     m_name->setPlaceholderText(tr("no name"));
     const auto label = [this](const QString& text, QWidget* buddy) {
         auto* const made = new QLabel(text, this);
