@@ -6,8 +6,8 @@
 # NAMEs are those of docs/images without ".png"; without one all are made. Pictures of the window are lists of steps,
 # which tests/tools/window_pictures.cpp takes; the others are drawn by pellucid-cli. Nearly all are of built-in samples
 # and of what tests/tools/guide_data.cpp makes up. Those of real volumes need --data, which is ../shared/data/real where
-# that is there; what is left out, for want of that or of a browser, is told. Look at every picture, and at the text around it: it
-# must say what the picture shows.
+# that is there; what is left out, for want of that or of a browser, is told. Look at every picture, and at the text
+# around it: it must say what the picture shows.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=build/release data=../shared/data/real out=docs/images
@@ -63,7 +63,8 @@ picture window_opened "${shells[@]}"
 picture tour --sample-size 64 sample:shells tourAction click:tourNext
 picture window_optimized "${shells[@]}" targets:1,2,3 optimizeAction
 picture convergence --sample-size 24 --tf tents:3 sample:shells targets:1,3,6 "set:methodCombo=Fixed step" \
-    set:mostMovesSpin=20 optimizeAction convergenceAction click:showStart "set:methodCombo=Parallel line search" optimizeAction
+    set:mostMovesSpin=20 optimizeAction convergenceAction click:showStart \
+    "set:methodCombo=Parallel line search" optimizeAction
 picture window_influence "${knee[@]}" influenceAction
 picture targets "${knee[@]}" targetsDiagonal key:targetBars=L liveTargetsAction
 picture window_clip "${shells[@]}" clipAction addPlaneAction view:95,30,1.66
@@ -185,10 +186,9 @@ refined() {
     done
     cell "$volume" --tf "$tf" "${cut[@]}"
     at=(${region//,/ })
-    convert "${cells[-1]}" -fill none -stroke white -strokewidth 2 -draw "rectangle ${at[0]},${at[1]} ${at[2]},${at[3]}" \
-        "${cells[-1]}"
-    "$cli" refine "$volume" --tf "$tf" "${cut[@]}" --size 300x300 --region "$region" --out-tf "$scratch/region.tf.json" \
-        >/dev/null
+    mogrify -fill none -stroke white -strokewidth 2 -draw "rectangle ${at[0]},${at[1]} ${at[2]},${at[3]}" "${cells[-1]}"
+    "$cli" refine "$volume" --tf "$tf" "${cut[@]}" --size 300x300 --region "$region" \
+        --out-tf "$scratch/region.tf.json" >/dev/null
     cell "$volume" --tf "$scratch/region.tf.json" "${cut[@]}"
     cell "$volume" --tf "$scratch/region.tf.json"
 }
