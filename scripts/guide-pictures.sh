@@ -81,6 +81,9 @@ picture tf_editor "${shells[@]}" jointHistogram select:1 wheel:tfCanvas=0.05,0.5
 picture color_vision "${knee[@]}" visionDeuteranopiaAction
 picture refiner --size 1280x860 sample:knee set:clipYLo=50 "set:refineMethodCombo=Exact" refinementAction \
     rectangleAction drag:volumeView=0.474,0.39,0.526,0.435
+picture keyframes "${knee[@]}" keyframesAction addKeyframeAction view:60,10,1.2 set:clipXHi=50 addKeyframeAction \
+    view:120,25,1.6 addKeyframeAction \
+    over:keyStrip=0.5,0.9 over:volumeView=0.9,0.1 over:keyStrip=0.5,0.9 over:volumeView=0.9,0.1 # its pictures come
 picture parameter_space --size 1280x900 --sample-size 64 --tf tents:3 sample:shells targets:1,3,6 \
     "set:methodCombo=Parallel line search" optimizeAction undoAction "set:methodCombo=Fixed step" optimizeAction \
     spaceAction click:spaceCompute
