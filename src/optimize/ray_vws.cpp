@@ -105,10 +105,9 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
             double from; ///< t at which a voxel's light is taken
             Met met;
         };
-        thread_local std::vector<double> begins; // of the steps that absorb
-        thread_local std::vector<Point> points;
-        begins.clear();
-        points.clear();
+        // Not of the thread: glibc ends the program where memory lacks to note that they are to be freed with it.
+        std::vector<double> begins; // of the steps that absorb
+        std::vector<Point> points;
         OfRay& here = all[pixel];
         const double slant = glm::dot(r.direction, forward);
         auto next = met[pixel].begin();
