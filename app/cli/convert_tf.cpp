@@ -33,11 +33,12 @@ std::string pythonNames(const char* between) {
 Target targetNamed(const std::string& name) {
     for (const TfSnippet& snippet : tfSnippets())
         if (lowerCase(name) == snippet.name + std::string(kPython)) return {nullptr, &snippet};
-    for (const TfFormat& format : tfFormats())
-        if (lowerCase(name) == format.name) return {&format, nullptr};
-    throw UsageError("there is no format " + inQuotes(name) + " of transfer functions", "",
-                     "use " + joined(tfFormats(), ", ", &TfFormat::name) + ", or for lines of Python " +
-                         pythonNames(", "));
+    try {
+        return {&tfFormatNamed(name), nullptr};
+    } catch (const UsageError& error) { // which knows of files alone
+        throw UsageError(error.problem(), error.where(),
+                         error.whatToDo() + ", or for lines of Python " + pythonNames(", "));
+    }
 }
 
 /// A transfer function, and what it is written for.

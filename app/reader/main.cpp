@@ -65,7 +65,7 @@ JobControl progressTeller(Voxels& voxels, std::uint64_t bytes) {
 /// Time and memory by what has to be read: a library has a file as it is and unpacked, and we have it once more.
 class Limits {
 public:
-    void setVoxels(std::uint64_t bytes) { m_voxels = bytes; }
+    void setVoxels(std::uint64_t bytes) { m_voxels = bytes; } ///< that are mapped
     void setImage(std::uint64_t bytes) { m_most = std::max(m_most, bytes); }
     void beforeFile(std::uint64_t bytes) {
         m_most = std::max(m_most, bytes);
@@ -92,9 +92,11 @@ void answer(const ReaderRequest& request) {
     for (std::string line; std::getline(std::cin, line);) { // until nobody wants more
         const ReaderBox box = boxIn(nlohmann::json::parse(line, nullptr, false));
         const std::uint64_t bytes = bytesOf(box, layout, request.path);
-        limits.setVoxels(bytes);
+        // Kept from box to box, of which the first and the last may be smaller; it counts as long as it is mapped.
+        const std::uint64_t mapped = room ? std::max<std::uint64_t>(room->bytes().size(), bytes) : bytes;
+        limits.setVoxels(mapped);
         before(0);
-        if (!room || room->bytes().size() < bytes) room.emplace(bytes); // the first is the largest
+        if (!room || room->bytes().size() < mapped) room.emplace(mapped);
         volume->read(request.step, box, room->bytes().first(bytes), before, progressTeller(*room, bytes));
         say({{"done", true}});
     }

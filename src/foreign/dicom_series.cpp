@@ -209,6 +209,7 @@ DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, con
     }
     m_name = chosen->name;
     m_frames = std::move(chosen->frames);
+    m_type = keptType();
     if (all.size() > 1 && wanted.empty())
         m_notices.push_back("series " + inQuotes(m_name) + " of " + std::to_string(all.size()) + " is shown");
     if (!faults.empty())
@@ -247,7 +248,7 @@ ReaderLayout DicomSeries::layout(int step) const {
     ReaderLayout answer;
     FileLayout& layout = answer.layout;
     const Geometry& g = m_stack.geometry;
-    layout.type = keptType();
+    layout.type = m_type;
     const int samples = m_frames.front().pixels.samples;
     if (samples > 1) layout.axes.push_back({samples, true});
     for (int a = 0; a < 3; ++a) layout.axes.push_back({g.dims[a]});
@@ -316,7 +317,7 @@ void DicomSeries::read(int step, const ReaderBox& box, std::span<std::byte> voxe
         pictures.read(n, read);
         return values[n] = std::move(read);
     };
-    withType(keptType(), [&](auto zero) {
+    withType(m_type, [&](auto zero) {
         using T = decltype(zero);
         const VoxelRegion& region = box.region;
         std::vector<T> slice;

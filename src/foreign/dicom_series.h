@@ -32,6 +32,7 @@ private:
     std::string m_path, m_name;
     std::vector<std::string> m_names, m_details; ///< of all series
     std::vector<DicomFrame> m_frames;            ///< of this one
+    ValueType m_type = ValueType::U8;            ///< keptType()
     DicomStack m_stack;
     std::vector<std::string> m_notices;
 };

@@ -35,7 +35,7 @@ KeyframesController::KeyframesController(Services& services, PlayerController& p
         if (!m_services.isReadOnly()) return;
         m_timer.stop(); // what shows its moves now has ended the preview
         m_before.reset();
-        m_drag.reset();
+        m_dragged.reset();
         m_awaited.reset();
         Q_EMIT changed();
     });
@@ -201,22 +201,21 @@ void KeyframesController::selectBeside(int by) {
 
 void KeyframesController::dragKey(int key, double time) {
     if (!m_services.isEditable()) return;
-    if (!m_drag) {
+    if (!m_dragged) {
         pause();
         rest();
-        m_drag = Drag{key};
+        m_dragged = key;
     }
-    const int from = m_drag->key;
     Keyframes moved = *m_services.store().committed().session.keyframes;
-    m_selected = static_cast<int>(moveKey(moved, static_cast<std::size_t>(from), time));
+    m_selected = static_cast<int>(moveKey(moved, static_cast<std::size_t>(*m_dragged), time));
     m_services.store().preview(tr("Time of key"), changing(&Session::keyframes, [&](Keyframes& all) { all = moved; }));
     Q_EMIT changed();
 }
 
 void KeyframesController::endDrag(bool keeps) {
-    if (!m_drag) return;
-    if (!keeps) m_selected = m_drag->key;
-    m_drag.reset();
+    if (!m_dragged) return;
+    if (!keeps) m_selected = *m_dragged;
+    m_dragged.reset();
     keeps ? m_services.store().commit() : m_services.store().cancel();
     Q_EMIT changed();
 }
@@ -299,7 +298,7 @@ void KeyframesController::follow(const Scene& before, const Scene& after) {
     if (before.series != after.series || after.volume == nullptr) {
         m_timer.stop();
         m_before.reset();
-        m_drag.reset();
+        m_dragged.reset();
         m_awaited.reset();
         m_playhead = 0;
         m_selected = 0;

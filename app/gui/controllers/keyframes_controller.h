@@ -73,9 +73,6 @@ private:
         double playhead = 0;
         int gesture = 0; ///< of the camera
     };
-    struct Drag {
-        int key = 0; ///< before it
-    };
     void show();
     void follow(const Scene& before, const Scene& after);
     void edit(const QString& text, const QString& mergeKey, const std::function<void(Keyframes&)>& change);
@@ -89,8 +86,8 @@ private:
     double m_playhead = 0;
     int m_selected = 0;
     std::optional<Before> m_before; ///< while what is shown is a preview
-    std::optional<Drag> m_drag;
-    std::optional<int> m_awaited; ///< frame that the playhead waits for
+    std::optional<int> m_dragged;   ///< a key, as they were before the drag
+    std::optional<int> m_awaited;   ///< frame that the playhead waits for
     QTimer m_timer;
     QElapsedTimer m_clock;
     double m_playedFrom = 0; ///< s, where the clock began

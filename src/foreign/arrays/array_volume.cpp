@@ -177,7 +177,9 @@ ArrayBox ArrayVolume::boxOf(int step, const ReaderBox& part) const {
         box.first[a] = part.region.lo[axis];
         box.size[a] = part.region.hi[axis] - part.region.lo[axis];
     }
-    if (m_axes.components && componentsAreApart(layout(step).layout)) {
+    // As componentsAreApart() says of layout(), in which the slowest axis is the last one.
+    const auto isFaster = [&](std::size_t place) { return place > *m_axes.components; };
+    if (m_axes.components && std::ranges::all_of(m_axes.places, isFaster)) {
         box.first[*m_axes.components] = part.component;
         box.size[*m_axes.components] = 1;
     }

@@ -74,15 +74,15 @@ public:
         const int bits = number(TIFFTAG_BITSPERSAMPLE, 1), format = number(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
         const int photometric = number(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
         if (photometric == PHOTOMETRIC_YCBCR) TIFFSetField(m_file, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
-        const std::map<std::pair<int, int>, ValueType> types{
+        static const std::map<std::pair<int, int>, ValueType> kTypes{
             {{8, SAMPLEFORMAT_UINT}, ValueType::U8},     {{16, SAMPLEFORMAT_UINT}, ValueType::U16},
             {{32, SAMPLEFORMAT_UINT}, ValueType::U32},   {{64, SAMPLEFORMAT_UINT}, ValueType::U64},
             {{8, SAMPLEFORMAT_VOID}, ValueType::U8},     {{16, SAMPLEFORMAT_VOID}, ValueType::U16},
             {{8, SAMPLEFORMAT_INT}, ValueType::I8},      {{16, SAMPLEFORMAT_INT}, ValueType::I16},
             {{32, SAMPLEFORMAT_INT}, ValueType::I32},    {{64, SAMPLEFORMAT_INT}, ValueType::I64},
             {{32, SAMPLEFORMAT_IEEEFP}, ValueType::F32}, {{64, SAMPLEFORMAT_IEEEFP}, ValueType::F64}};
-        const auto type = types.find({bits, format});
-        if (type == types.end() || shape.samples < 1 || shape.samples > 1000)
+        const auto type = kTypes.find({bits, format});
+        if (type == kTypes.end() || shape.samples < 1 || shape.samples > 1000)
             throw pictureFailure(m_path, "pixels of " + std::to_string(shape.samples) + " samples of " +
                                              std::to_string(bits) + " bits are not supported");
         shape.type = type->second;

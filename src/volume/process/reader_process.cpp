@@ -416,13 +416,13 @@ void placeInFile(FileLayout& layout, const std::vector<std::uint64_t>& starts) {
         if (start > there) throw FileError("some voxels lie behind the end of the file", path, kCopyAgain);
         requireStored(path, Encoding::Raw, values / starts.size(), bytesPerValue(layout.type), there - start,
                       kCopyAgain);
-        StoredValues part = layout;
-        part.start = start;
-        layout.parts.push_back(std::move(part));
     }
-    if (layout.parts.size() > 1) return;
     layout.start = starts.front();
-    layout.parts.clear();
+    if (starts.size() == 1) return;
+    for (const std::uint64_t start : starts) {
+        layout.parts.push_back(layout);
+        layout.parts.back().start = start;
+    }
 }
 
 Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool middleOnly, const JobControl& job) {
@@ -435,8 +435,7 @@ Volume readPart(const VolumeSource& source, const ReaderRequest& request, bool m
     taken.step = 0; // the one that is read
     if (!taken.array.empty()) taken.array = layout.array;
     if (!taken.missing) taken.missing = answer.missing;
-    const FileContents contents = contentsOf(layout);
-    const Int3 dims = contents.dims;
+    const Int3 dims = dimsOf(answer, 0);
     if (middleOnly) taken.region = VoxelRegion{{0, 0, dims.z / 2}, {dims.x, dims.y, dims.z / 2 + 1}};
     if (!answer.inFile.empty()) {
         placeInFile(layout, answer.inFile);
