@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes the parsers that are ours: scripts/fuzz.sh [SECONDS] [TARGET…], each for 60 seconds where nothing is said, two
-# at a time. `volumes`, `readers` and `documents` stand for those of volume files, those of what the programs parse that
-# read foreign formats, and those of all other files, which are all.
+# at a time (PELLUCID_FUZZ_JOBS: how many). `volumes`, `readers` and `documents` stand for those of volume files, those
+# of what the programs parse that read foreign formats, and those of all other files, which are all.
 # Sets up and builds with clang what it needs, into build/fuzz. Inputs that reach new code are kept there, in corpus/,
 # and the next run begins with them. PELLUCID_FUZZ_SEED: another sequence of inputs than that of seed 1.
 # Exit status 1 at the first input that fails; it is kept in build/fuzz/failures, and what to do with it is said.
@@ -74,11 +74,12 @@ fuzz() {
     return 1
 }
 
-# Two at a time; `wait -n` ends the script with the first that fails.
+# `wait -n` ends the script with the first that fails.
+jobs=${PELLUCID_FUZZ_JOBS:-2}
 for i in "${!targets[@]}"; do
-    [ "$i" -lt 2 ] || wait -n
+    [ "$i" -lt "$jobs" ] || wait -n
     fuzz "${targets[i]}" &
 done
 for i in "${!targets[@]}"; do
-    [ "$i" -ge 2 ] || wait -n
+    [ "$i" -ge "$jobs" ] || wait -n
 done
