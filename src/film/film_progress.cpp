@@ -25,8 +25,18 @@ namespace {
 constexpr const char* kFormat = "pellucid-film-progress";
 constexpr int kVersion = 1;
 
+/// Features have identities only where they were edited or kept, and no picture depends on them.
+json withoutIdentities(json j) {
+    if (j.is_object()) j.erase("identity");
+    for (json& part : j)
+        if (part.is_structured()) part = withoutIdentities(std::move(part));
+    return j;
+}
+
 /// Names of files need not be UTF-8.
-void addTo(Digest& digest, const json& j) { digest.add(j.dump(-1, ' ', false, json::error_handler_t::replace)); }
+void addTo(Digest& digest, const json& j) {
+    digest.add(withoutIdentities(j).dump(-1, ' ', false, json::error_handler_t::replace));
+}
 
 /// What is decided of the pictures; what is kept beside it changes none, nor does what keys decide.
 json picturePart(const FilmTask& task) {

@@ -122,6 +122,12 @@ TEST_CASE("another film is not taken for the one that was begun", "[film]") {
     other.scene.session.optimize.edit([](OptimizeOptions& o) { o.maxIterations = 3; });
     REQUIRE(unfinishedFilm(other));
     CHECK(unfinishedFilm(other)->isThisOne);
+    // The window gives the features of a file identities, the command line none.
+    for (Feature& feature : other.scene.tf.features) feature.id += 7;
+    for (Keyframe& key : other.keys)
+        for (Feature& feature : key.state.tf.features) feature.id += 7;
+    REQUIRE(unfinishedFilm(other));
+    CHECK(unfinishedFilm(other)->isThisOne);
     // Begun anew, nothing of the old one stays.
     task.width = 50;
     const FilmResult film = makeFilm(task);

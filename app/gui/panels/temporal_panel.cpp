@@ -21,6 +21,7 @@ namespace {
 enum Shown { kVws, kVisibility, kOpacity, kPicture };
 
 constexpr int kPictureSize = 512; ///< pixels of the side of the pictures that 2DFS is of
+constexpr int kLeastPlot = 120;   ///< logical pixels: four of them and the panel Time are as wide as a window of 1280
 
 bool same(const std::shared_ptr<const TransferFunction>& a, const std::shared_ptr<const TransferFunction>& b) {
     return a == b || (a != nullptr && b != nullptr && *a == *b);
@@ -143,6 +144,7 @@ QLayout* TemporalPanel::makePlots() {
             label->setVisible(!text.isEmpty()); // while it says nothing the words beside it have its room
         });
         connect(plot, &PlotView::exportWanted, this, &TemporalPanel::chooseFile);
+        plot->setMinimumWidth(kLeastPlot);
         row->addWidget(plot, 1);
     }
     return row;
