@@ -245,6 +245,7 @@ void KeyframesController::show() {
     if (m_player.awaited() == state.frame) m_awaited = state.frame;
     const TransferFunction tf = inRange(state.tf, scene.volume->range());
     store.preview(tr("Show keyframes"), [=](Session& session) {
+        session.holdTargets = false; // both set opacities
         session.setTf(tf);
         session.clipping.set(state.clipping);
         session.display.edit([&](DisplaySettings& d) { d.light = state.light; });
