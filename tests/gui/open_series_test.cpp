@@ -260,8 +260,8 @@ void writeStudy(const QTemporaryDir& folder, int slices) {
             test::DicomSlice slice;
             slice.columns = slice.rows = kSide;
             slice.number = n + 1;
-            slice.position = "0\\0\\" + std::to_string(n);
-            slice.spacing = "1\\1";
+            slice.position = "-20\\30\\" + std::to_string(2 * n);
+            slice.spacing = "1.25\\0.5"; // between rows, then columns
             slice.description = isThin ? "thin" : "head";
             slice.series = isThin ? "1.2.9" : "1.2.3";
             slice.seriesNumber = isThin ? "7" : "1";
@@ -276,8 +276,8 @@ void writeStudy(const QTemporaryDir& folder, int slices) {
 
 } // namespace
 
-TEST_CASE("of several DICOM series in a dropped folder one is chosen by its picture", "[series]") {
-    const QTemporaryDir folder;
+TEST_CASE("of several DICOM series in a dropped folder one is chosen by its picture, and saved as NIfTI", "[series]") {
+    const QTemporaryDir folder, other;
     writeStudy(folder, 10);
     OpenWindow w;
     QStringList offered;
@@ -299,6 +299,30 @@ TEST_CASE("of several DICOM series in a dropped folder one is chosen by its pict
     const Scene& scene = w.services().scene();
     CHECK(scene.volume->dims() == Int3(kSide, kSide, 6));
     CHECK(scene.session.variable().source.array == "7: thin");
+    const std::shared_ptr<const Volume> thin = scene.volume;
+    CHECK(thin->value(voxelIndex(thin->dims(), 3, 4, 5)) == 950); // of the last slice
+
+    const QString path = other.filePath("thin.nii.gz");
+    QSignalSpy saved(&w.saving(), &SaveController::volumeSaved);
+    answer("saveVolumeDialog", [&](QDialog& dialog) {
+        dialog.findChild<QLineEdit*>("volumePath")->setText(path);
+        dialog.accept();
+    });
+    w.child<QAction>("saveVolumeAction").trigger();
+    REQUIRE(waitFor([&] { return saved.count() == 1; }));
+    drop(w.window, {path});
+    REQUIRE(waitFor([&] { return opened.count() == 2; }));
+    const Volume& again = *scene.volume;
+    REQUIRE(&again != thin.get());
+    CHECK(again.format == "NIfTI");
+    CHECK(again.dims() == thin->dims());
+    CHECK(again.samples() == thin->samples());
+    CHECK(again.geometry().spacing == Vec3(0.5, 1.25, 2));
+    CHECK(again.geometry().worldAxes == WorldAxes::Patient);
+    for (const Vec3& voxel : {Vec3(0), Vec3(11, 0, 0), Vec3(0, 11, 0), Vec3(0, 0, 5)}) {
+        const Vec3 place = Vec3(-20, 30, 0) + voxel * Vec3(0.5, 1.25, 2);
+        CHECK(glm::length(again.geometry().worldFromVoxel(voxel) - place) < 1e-5);
+    }
 }
 
 TEST_CASE("nothing is opened where no DICOM series is chosen, and a broken slice is named", "[series]") {
