@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -172,8 +173,10 @@ Outcome failureOf(const std::exception_ptr& thrown, const std::string& where) {
     } catch (const std::filesystem::filesystem_error& e) {
         return fail(1, e.code().message() + ", " + e.path1().string() + ", check permissions and space");
     } catch (const std::exception& e) {
-        // The threads' library has no exception of its own for this.
-        if (std::string_view(e.what()).find("pthread_create") != std::string_view::npos)
+        const auto* system = dynamic_cast<const std::system_error*>(&e);
+        // TBB has no exception of its own for this.
+        if ((system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
+            std::string_view(e.what()).find("pthread_create") != std::string_view::npos)
             return fail(1, "the system starts no more threads for this program, " + where +
                                ", raise the limits on processes and memory (ulimit -u, -v), or give --threads 1");
         return fail(1, std::string("unexpected failure (") + e.what() + "), " + where +

@@ -15,6 +15,7 @@
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "bench/dicom_slices.h"
 #include "optimize/optimizer.h"
 #include "optimize/ray_vws.h"
 #include "optimize/refine/refine.h"
@@ -198,24 +199,30 @@ private:
         return row(which, engine, candidates, m_case.tf, m_case.tfName);
     }
 
-    /// The volume as it is, and read anew from what our own writers make of it.
+    /// The volume as it is, and read anew from what writers make of it.
     void addOpen(const JobControl& job) {
         if (m_case.volume->elsewhere() != nullptr) return; // no process has all of it
         m_files.emplace();
         for (const char* name : {"raw.mhd", "gzip.nrrd", "vtk.vti", "stack.tif", "image.zarr"}) {
-            const std::string path = m_files->path(name);
-            writeVolume(*m_case.volume, path, {}, {job.stop, {}});
-            BenchResult r = row(BenchRow::Open, "cpu");
-            r.tf.reset();
-            r.features.reset();
-            r.extra = {{"file", name}};
-            addWith(1, r, sampleBytes(), [path](BenchResult&, const JobControl& j) {
-                VolumeSource source;
-                source.path = path;
-                source.downsample = 1;
-                loadVolume(source, j);
-            });
+            writeVolume(*m_case.volume, m_files->path(name), {}, {job.stop, {}});
+            addOpen(name);
         }
+        if (!fitsDicom(*m_case.volume)) return;
+        std::filesystem::create_directory(m_files->path("dicom"));
+        writeDicomSlices(*m_case.volume, m_files->path("dicom"));
+        addOpen("dicom");
+    }
+    void addOpen(const std::string& name) {
+        BenchResult r = row(BenchRow::Open, "cpu");
+        r.tf.reset();
+        r.features.reset();
+        r.extra = {{"file", name}};
+        addWith(1, r, sampleBytes(), [path = m_files->path(name)](BenchResult&, const JobControl& j) {
+            VolumeSource source;
+            source.path = path;
+            source.downsample = 1;
+            loadVolume(source, j);
+        });
     }
 
     void addSetup() {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include <unistd.h>
@@ -100,6 +101,50 @@ std::vector<FfmpegWords> callsFor(FilmFile file, double framesPerSecond, const s
     return calls;
 }
 
+/// The next `count` bytes as a number, the first one the highest.
+std::uint64_t nextNumber(std::istream& in, int count) {
+    std::uint64_t number = 0;
+    for (int i = 0; i < count; ++i) number = number << 8 | static_cast<unsigned char>(in.get());
+    return number;
+}
+
+/// The number of an element of WebM, or how long one is: the zeros before its first bit that is set say in how many
+/// bytes it stands.
+std::uint64_t nextOfWebM(std::istream& in, bool isLength) {
+    const int first = in.get();
+    int bytes = 1;
+    while (bytes < 8 && (first & 0x80 >> (bytes - 1)) == 0) ++bytes;
+    const auto start = static_cast<std::uint64_t>(isLength ? first & (0x7f >> (bytes - 1)) : first);
+    return start << 8 * (bytes - 1) | nextNumber(in, bytes - 1);
+}
+
+/// ffmpeg does not tell where the last bytes of a film could not be written. Whether they are there, by the lengths
+/// that the parts of the file give of themselves, or by what ends a GIF.
+bool isWhole(FilmFile file, const std::string& path) {
+    std::ifstream in(path, std::ios::binary | std::ios::ate);
+    const auto end = static_cast<std::uint64_t>(in.tellg());
+    if (file == FilmFile::Gif) {
+        in.seekg(-2, std::ios::end);
+        return nextNumber(in, 2) == ';'; // after the 0 that ends a picture
+    }
+    std::uint64_t at = 0;
+    while (in && at < end) {
+        in.seekg(static_cast<std::streamoff>(at));
+        if (file == FilmFile::WebM) {
+            nextOfWebM(in, false);
+            const std::uint64_t length = nextOfWebM(in, true);
+            at = static_cast<std::uint64_t>(in.tellg()) + length;
+        } else {
+            std::uint64_t length = nextNumber(in, 4);
+            const std::uint64_t kind = nextNumber(in, 4);
+            if (length == 1) length = nextNumber(in, 8);
+            if (kind == 0 || length < 8) return false;
+            at += length;
+        }
+    }
+    return in && at == end;
+}
+
 } // namespace
 
 ScratchFolder::ScratchFolder(const std::string& path) {
@@ -153,6 +198,9 @@ void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond
     std::error_code failed;
     const std::string film = scratch.file(name.c_str());
     if (finished && fs::is_regular_file(film)) {
+        if (!isWhole(file, film))
+            throw FileError("ffmpeg could not write all of the film", path,
+                            "make room, or raise the limit on file sizes");
         fs::rename(film, path, failed);
         if (!failed) return;
     }

@@ -1,7 +1,9 @@
 #include "image_io/image_file.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
+#include <thread>
 
 #include <dlfcn.h>
 
@@ -35,9 +37,28 @@ fs::path pathOfCodecs() {
     return fs::exists(beside, ec) ? beside : folder / PELLUCID_LIBRARIES_FROM_PROGRAMS / PELLUCID_IMAGE_CODECS;
 }
 
-/// Loads them once. Throws FileError.
+/// Libraries under OpenImageIO start threads while they are loaded, and end the program where they get none.
+void requireThreads() {
+    constexpr int kMany = 8;
+    std::atomic<bool> isWaiting = true;
+    const auto release = [&] {
+        isWaiting = false;
+        isWaiting.notify_all();
+    };
+    std::vector<std::jthread> threads;
+    try {
+        for (int i = 0; i < kMany; ++i) threads.emplace_back([&] { isWaiting.wait(true); });
+    } catch (...) {
+        release();
+        throw;
+    }
+    release();
+}
+
+/// Loads them once. Throws FileError, std::system_error.
 const ImageCodecs& codecs() {
     static const ImageCodecs& loaded = []() -> const ImageCodecs& {
+        requireThreads();
         const std::string path = pathOfCodecs().string();
         void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library == nullptr ? nullptr : ::dlsym(library, kImageCodecsSymbol);

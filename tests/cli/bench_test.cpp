@@ -69,6 +69,10 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
                                          "optimize", "optimize-newton", "threads", "optimize-whole", "refine",
                                          "refine-500", "refine-1000", "refine-direct", "render", "preview"});
 
+    std::set<std::string> files;
+    for (const json& row : rowsNamed(j, "open")) files.insert(row["file"]);
+    CHECK(files == std::set<std::string>{"raw.mhd", "gzip.nrrd", "vtk.vti", "stack.tif", "image.zarr", "dicom"});
+
     for (const json& row : rowsNamed(j, "preview")) CHECK(row["ssim"].get<double>() > 0.95);
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.

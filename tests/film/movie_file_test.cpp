@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 
 #include <catch2/catch.hpp>
+#include <sys/resource.h>
 
 #include "base/atomic_file.h"
 #include "base/child_program.h"
@@ -110,6 +112,44 @@ TEST_CASE("without ffmpeg there are animated PNG files, and that is said", "[fil
     CHECK(makeFilm(turntable(scene, folder.path("a.apng"))).pictures == 12);
     setenv("PATH", before.c_str(), 1);
     CHECK(folder.fileCount() == 1);
+}
+
+TEST_CASE("a film whose last bytes cannot be written is told, and absent", "[film]") {
+    if (!hasPlayer()) {
+        WARN("skipped: no ffmpeg");
+        return;
+    }
+    const TempFolder folder;
+    const Scene scene = filmScene("sample:shells", 24);
+    FilmTask task = turntable(scene, folder.path("pictures"), 0.5);
+    makeFilm(task);
+    std::vector<std::string> pictures;
+    for (int n = 0; n < 6; ++n) pictures.push_back(pictureFileOf(task.path, n));
+    const auto before = std::signal(SIGXFSZ, SIG_IGN); // as the programs do
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    for (const char* name : {"film.mp4", "film.webm", "film.gif"}) {
+        INFO(name);
+        const std::string path = folder.path(name);
+        writeMovie(pictures, 12, path, {});
+        const std::uintmax_t size = fs::file_size(path);
+        fs::remove(path);
+        for (const std::uintmax_t missing : {std::uintmax_t{1}, size / 3}) {
+            const rlimit less{static_cast<rlim_t>(size - missing), limit.rlim_max};
+            setrlimit(RLIMIT_FSIZE, &less);
+            std::string told;
+            try {
+                writeMovie(pictures, 12, path, {});
+            } catch (const Error& e) {
+                told = e.what();
+            }
+            setrlimit(RLIMIT_FSIZE, &limit);
+            CHECK(told.find(name) != std::string::npos);
+            CHECK_FALSE(fs::exists(path));
+        }
+    }
+    std::signal(SIGXFSZ, before);
+    CHECK(folder.fileCount() == 1); // the pictures
 }
 
 TEST_CASE("films play back as they were drawn", "[film]") {

@@ -198,6 +198,32 @@ TEST_CASE("memory that runs out while a volume of each format is read is told", 
     requireToldAlways(opening(folder.write("a.raw", std::string(48, 'v')), "4,3,2,i16,big"));
     folder.write("a.dat", "RawFile: a.raw\nResolution: 4 3 2\nFormat: UINT16\n");
     requireToldAlways(opening(folder.path("a.dat")));
+    requireToldAlways(opening(folder.write(
+        "a.vvd", "<?xml version=\"1.0\" ?><VoreenData version=\"1\"><Volumes><Volume><RawData filename=\"a.raw\" "
+                 "format=\"uint16\" x=\"4\" y=\"3\" z=\"2\"/></Volume></Volumes></VoreenData>")));
+    requireToldAlways(opening(folder.write("a.nhdr", "NRRD0004\ntype: ushort\ndimension: 3\nsizes: 4 3 2\n"
+                                                     "endian: little\nencoding: raw\ndata file: a.raw\n")));
+    requireToldAlways(opening(
+        folder.write("a.mrml", "<MRML><Volume name=\"v\" storageNodeRef=\"s\"/><VolumeArchetypeStorage id=\"s\" "
+                               "fileName=\"a.nrrd\"/></MRML>")));
+}
+
+TEST_CASE("memory that runs out while a volume in several VTK files is read is told", "[failing-memory]") {
+    if (!canFail()) return;
+    setThreadCount(1);
+    const TempFolder folder;
+    const std::string image = "WholeExtent=\"0 3 0 2 0 1\" Origin=\"0 0 0\" Spacing=\"1 1 1\"";
+    const std::string type = "type=\"UInt8\" Name=\"v\"", left = "0 1 0 2 0 1", right = "1 3 0 2 0 1";
+    const Style style{Style::Place::Raw};
+    folder.write("left.vti", vti(style, {{type, "", std::string(12, 'v')}}, "", image, left));
+    folder.write("right.vti", vti(style, {{type, "", std::string(18, 'v')}}, "", image, right));
+    folder.write("a.pvti", pvti(image, {type}, {{left, "left.vti"}, {right, "right.vti"}}));
+    requireToldAlways(opening(folder.path("a.pvti")));
+    const std::string whole = "WholeExtent=\"0 1 0 2 0 1\"";
+    folder.write("one.vti", vti(style, {{type, "", std::string(12, 'v')}}, "", whole, left));
+    requireToldAlways(
+        opening(folder.write("a.pvd", "<?xml version=\"1.0\"?><VTKFile type=\"Collection\" version=\"0.1\"><Collection>"
+                                      "<DataSet timestep=\"0\" file=\"one.vti\"/></Collection></VTKFile>")));
 }
 
 TEST_CASE("memory that runs out while a series is listed and a frame of it is read is told", "[failing-memory]") {
