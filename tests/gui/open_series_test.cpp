@@ -354,6 +354,54 @@ TEST_CASE("nothing is opened where no DICOM series is chosen, and a broken slice
     CHECK(w.services().store().session() == session);
 }
 
+TEST_CASE("of several arrays in a VTK file one is chosen before it is read", "[series]") {
+    const QTemporaryDir folder;
+    const auto values = [](int first) {
+        std::string text;
+        for (int i = 0; i < 27; ++i) text += std::to_string(first + i) + " ";
+        return text;
+    };
+    const auto vtiOf = [&](const std::vector<std::string>& names) {
+        std::string text = "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\"><ImageData "
+                           "WholeExtent=\"0 2 0 2 0 2\"><Piece Extent=\"0 2 0 2 0 2\"><PointData>";
+        for (std::size_t i = 0; i < names.size(); ++i)
+            text += "<DataArray type=\"Int32\" Name=\"" + names[i] + "\" format=\"ascii\">" +
+                    values(static_cast<int>(100 * i)) + "</DataArray>";
+        return text + "</PointData></Piece></ImageData></VTKFile>";
+    };
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream(folder.filePath(name).toStdString()) << text;
+        return folder.filePath(name);
+    };
+    const std::string legacy = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 3 3\n"
+                               "SPACING 1 1 1\nORIGIN 0 0 0\nPOINT_DATA 27\nSCALARS density int 1\n"
+                               "LOOKUP_TABLE default\n" +
+                               values(0) + "\nSCALARS speed int 1\nLOOKUP_TABLE default\n" + values(100) + "\n";
+    OpenWindow w;
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    for (const QString& path : {write("two.vti", vtiOf({"density", "speed"})), write("two.vtk", legacy)}) {
+        CAPTURE(path.toStdString());
+        QStringList offered;
+        answer("seriesChoiceDialog", [&](QDialog& dialog) {
+            auto& list = *dialog.findChild<QListWidget*>("seriesList");
+            for (int i = 0; i < list.count(); ++i) offered << list.item(i)->text();
+            list.setCurrentRow(1);
+            dialog.accept();
+        });
+        opened.clear();
+        w.opening().openPath(path);
+        REQUIRE(waitFor([&] { return opened.count() == 1; }));
+        CHECK(offered == QStringList{"density", "speed"});
+        CHECK(w.services().scene().session.variable().source.array == "speed");
+        CHECK(w.services().scene().data->dataRange() == ValueRange{100, 126});
+    }
+    // Of one there is nothing to ask.
+    opened.clear();
+    w.opening().openPath(write("one.vti", vtiOf({"density"})));
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    CHECK(w.services().scene().data->dataRange() == ValueRange{0, 26});
+}
+
 TEST_CASE("a header that names a file outside its folder is opened only after a question", "[series]") {
     const QTemporaryDir folder;
     REQUIRE(QDir(folder.path()).mkdir("headers"));

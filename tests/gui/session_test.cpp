@@ -285,7 +285,10 @@ TEST_CASE("a component of a file is a choice that can be undone", "[display]") {
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     CHECK(w.document().volume()->range() == ValueRange{0, 63});
     w.child<QDoubleSpinBox>("windowLo"); // the panel is there though hidden
-    w.child<QSpinBox>("componentSpin").setValue(1);
+    auto& component = w.child<QSpinBox>("componentSpin");
+    REQUIRE(waitFor([&] { return component.maximum() == 1; })); // of two numbers, counted from 0
+    CHECK(component.isEnabled());
+    component.setValue(1);
     REQUIRE(waitFor([&] { return w.document().volume()->dataRange() == ValueRange{100, 163}; }));
     w.settle();
     w.document().undo();
@@ -293,6 +296,15 @@ TEST_CASE("a component of a file is a choice that can be undone", "[display]") {
     w.document().redo();
     CHECK(w.document().volume()->dataRange() == ValueRange{100, 163});
     w.settle();
+
+    // Of one number for each voxel there is nothing to choose.
+    VolumeSource other;
+    other.path = folder.filePath("one.nrrd").toStdString();
+    std::ofstream(other.path, std::ios::binary)
+        << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n"
+        << bytes.substr(bytes.size() - 64);
+    w.open(other);
+    CHECK(waitFor([&] { return component.maximum() == 0 && !component.isEnabled(); }));
 }
 
 TEST_CASE("a transfer function's range becomes the window, and one click stretches it instead", "[session]") {

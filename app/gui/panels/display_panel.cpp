@@ -1,15 +1,18 @@
 // The panel of the picture: how it is made, what is behind it, one feature alone, and which values are looked at.
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include <QPushButton>
 #include <QSpinBox>
 
 #include "controllers/controllers.h"
+#include "jobs/job.h"
 #include "panels/panel.h"
 #include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
 #include "session/variable_edits.h"
+#include "volume/file_contents.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
 #include "widgets/number_box.h"
@@ -29,6 +32,8 @@ const std::array kModeTips{QT_TR_NOOP("Emission and absorption by the transfer f
 constexpr double kCoarsestFinest = 0.5,
                  kMostFinest = kFinestStep; ///< offered as the finest step, and powers of 2 between
 
+constexpr int kMostComponents = 1'000'000;
+
 constexpr Rgb kFirstTop{0.16, 0.19, 0.24}; // of a gradient that is switched on
 
 QString finestText(double step) {
@@ -45,6 +50,7 @@ private:
     void follow();
     void editVariable(const QString& text, const std::function<void(Variable&)>& change);
     void editWindow();
+    void followComponent(bool ready);
 
     Services& m_services;
     OpenController& m_opening;
@@ -65,13 +71,20 @@ private:
         named(new QSpinBox(this), "componentSpin",
               tr("Which number of each voxel is shown, where the file has several; the first one is 0"));
     QLabel* m_note = wrappedLabel("displayNote", this);
+    std::optional<VolumeSource> m_lookedAt; // by m_components: the first frame
+    int m_componentCount = kMostComponents; // as long as it is not known
+    Job<VolumeSource, int> m_components;
 };
 
 DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget* parent)
-    : QWidget(parent), m_services(services), m_opening(opening) {
+    : QWidget(parent), m_services(services), m_opening(opening),
+      m_components([](const VolumeSource& source, const JobControl& job) { return contentsOf(source, job).components; },
+                   [this](const VolumeSource&, int& count) {
+                       m_componentCount = count;
+                       follow();
+                   }) {
     setObjectName("displayPanel");
     for (double step = kCoarsestFinest; step >= kMostFinest; step /= 2) m_finest->addItem(finestText(step), step);
-    m_component->setRange(0, 1'000'000);
     m_component->setKeyboardTracking(false);
     for (QDoubleSpinBox* box : {m_lo, m_hi}) {
         withLook(box, {-1e300, 1e300});
@@ -168,9 +181,24 @@ void DisplayPanel::follow() {
     m_wholeRange->setEnabled(window != all);
     m_note->setText(tr("The values of the data run from %1 to %2.")
                         .arg(numberText(all.lo, all.hi - all.lo), numberText(all.hi, all.hi - all.lo)));
+    followComponent(ready);
+}
+
+/// How many there are the header tells, which takes a moment.
+void DisplayPanel::followComponent(bool ready) {
+    const Scene& scene = m_services.scene();
     const VolumeSource& source = dataVariable(scene.session).source;
-    if (m_component->value() != source.component) m_component->setValue(source.component);
-    m_component->setEnabled(ready && !source.isSample() && !source.raw);
+    const bool isFile = !source.isSample() && !source.raw;
+    VolumeSource first = scene.series->listing().frames.front().source;
+    first.component = 0;
+    if (isFile && m_lookedAt != first) {
+        m_componentCount = kMostComponents;
+        m_lookedAt = first;
+        m_components.start(first, QString::fromStdString(first.path));
+    }
+    m_component->setRange(0, std::max(m_componentCount - 1, source.component));
+    m_component->setValue(source.component);
+    m_component->setEnabled(ready && isFile && m_componentCount > 1);
 }
 
 } // namespace

@@ -239,13 +239,17 @@ std::vector<std::string> filesOfPieces(const std::string& path) {
 } // namespace
 
 VolumeFormat vtiFormat() {
-    return {"VTK image data", {".vti"},   describeLayout<layoutOf<false>>, readLayout<layoutOf<false>>,
-            nullptr,          kVtiContent};
+    VolumeFormat format{"VTK image data", {".vti"},   describeLayout<layoutOf<false>>, readLayout<layoutOf<false>>,
+                        nullptr,          kVtiContent};
+    format.holdsSeveral = true;
+    return format;
 }
 
 VolumeFormat pvtiFormat() {
-    return {"VTK image data in pieces", {".pvti"},     describeLayout<layoutOf<true>>,
-            readLayout<layoutOf<true>>, filesOfPieces, kPvtiContent};
+    VolumeFormat format{"VTK image data in pieces", {".pvti"},     describeLayout<layoutOf<true>>,
+                        readLayout<layoutOf<true>>, filesOfPieces, kPvtiContent};
+    format.holdsSeveral = true;
+    return format;
 }
 
 } // namespace pellucid

@@ -78,7 +78,10 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
 } // namespace
 
 VolumeFormat vtkLegacyFormat() {
-    return {"VTK legacy file", {".vtk"}, describeLayout<layoutOf>, readLayout<layoutOf>, nullptr, kVtkLegacyContent};
+    VolumeFormat format{"VTK legacy file",    {".vtk"}, describeLayout<layoutOf>,
+                        readLayout<layoutOf>, nullptr,  kVtkLegacyContent};
+    format.holdsSeveral = true;
+    return format;
 }
 
 } // namespace pellucid
