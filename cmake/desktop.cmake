@@ -20,6 +20,5 @@ endforeach()
 install(FILES ${drawing} DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT gui)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/desktop/pellucid.desktop
     DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT gui)
-configure_file(${PROJECT_SOURCE_DIR}/packaging/desktop/pellucid.metainfo.xml.in
-    ${PROJECT_BINARY_DIR}/pellucid.metainfo.xml @ONLY)
+include(metainfo)
 install(FILES ${PROJECT_BINARY_DIR}/pellucid.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT gui)

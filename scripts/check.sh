@@ -2,6 +2,7 @@
 # What is checked besides the tests: scripts/check.sh [--by SECONDS] [--end SECONDS] [CHECK…], all without a name.
 #   format    every C++ file is as clang-format leaves it
 #   mpi       pellucid-mpi builds, and its ranks measure what one process measures
+#   packages  the packages build, and lintian finds no error in them (scripts/try-packages.sh installs them)
 #   headless  the command line builds alone and needs neither Qt nor OpenGL to start
 #   headers   damaged headers of volume files, 2 000 of each format, are read or refused in words
 #   foreign   damaged files of the formats that libraries read, 500 of each, are read or refused in words
@@ -18,7 +19,7 @@
 # failure, and both are named. Exit status 1 where a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all=(format mpi headless headers foreign dev asan asan-mpi mutants tsan fuzz zink tidy)
+all=(format mpi packages headless headers foreign dev asan asan-mpi mutants tsan fuzz zink tidy)
 
 # Installs the packages of the commands that are missing: need COMMAND PACKAGE …
 need() {
@@ -42,6 +43,12 @@ check_mpi() {
     cmake --preset release -DPELLUCID_MPI=ON >/dev/null
     cmake --build --preset release --target pellucid-cli pellucid-mpi test_mpi
     ctest --preset release -L '^mpi$'
+}
+
+check_packages() {
+    scripts/setup.sh lintian
+    scripts/package.sh
+    lintian --fail-on error build/package/*.deb
 }
 
 check_headless() {

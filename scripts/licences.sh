@@ -6,8 +6,20 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-build/release}
 out=docs/licences.md
-programs=(pellucid-cli pellucid pellucid-reader pellucid-tiff-reader pellucid-image-reader pellucid-array-reader
-    pellucid_image_codecs.so pellucid_print.so)
+# Each with the letter that stands for it in the table.
+programs=() letters=()
+while read -r letter program; do
+    letters+=("$letter") programs+=("$program")
+done <<'END'
+c pellucid-cli
+w pellucid
+d pellucid-reader
+t pellucid-tiff-reader
+p pellucid-image-reader
+a pellucid-array-reader
+i pellucid_image_codecs.so
+f pellucid_print.so
+END
 headers=(libcli11-dev libeigen3-dev libglm-dev nlohmann-json3-dev)
 
 work=$(mktemp -d)
@@ -74,11 +86,13 @@ done
     echo "## Linked"
     echo
     echo "c: \`pellucid-cli\`; w: the window, \`pellucid\`; d, t, p, a: \`pellucid-reader\` (DICOM), \`-tiff-\`, \`-image-\` and"
-    echo "\`-array-reader\`; i: \`pellucid_image_codecs.so\`, which both programs load when they read or write the first picture."
+    echo "\`-array-reader\`; i: \`pellucid_image_codecs.so\`, which both programs load when they read a picture or write another than PNG;"
+    echo "f: \`pellucid_print.so\`, which they load when they make a figure for print. Through OpenImageIO, p and i come with libraries"
+    echo "that Debian builds under the GPL (FFmpeg, x264, x265): they are a package of their own, pellucid-images, which all but figures"
+    echo "for print, folders of pictures and EXR, TIFF and JPEG pictures do without."
     echo
     echo "| package | programs | licences |"
     echo "|---|---|---|"
-    letters=(c w d t p a i)
     cat "${programs[@]/#/$work/}" | LC_ALL=C sort -u | while read -r package; do
         of=
         for i in "${!programs[@]}"; do

@@ -2,6 +2,7 @@
 # Makes the packages, into build/package: scripts/package.sh [--cli]
 #   pellucid_*.deb, pellucid-cli_*.deb, pellucid-images_*.deb, libpellucid-dev_*.deb and pellucid-*.tar.gz
 # --cli: without the window, and without Qt. The maintainer's name and address: PELLUCID_MAINTAINER='Name <address>'.
+# A public address of the folder docs/images, for software centres: PELLUCID_SCREENSHOT_URL='https://…'.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 gui=ON
@@ -15,7 +16,8 @@ build=${PELLUCID_PACKAGE_BUILD:-build/package}
 # The day of the packages is that of the commit, so that two builds of it are the same.
 export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}
 cmake --preset package -B "$build" -DPELLUCID_BUILD_GUI=$gui \
-    ${PELLUCID_MAINTAINER:+"-DPELLUCID_MAINTAINER=$PELLUCID_MAINTAINER"} >/dev/null
+    ${PELLUCID_MAINTAINER:+"-DPELLUCID_MAINTAINER=$PELLUCID_MAINTAINER"} \
+    ${PELLUCID_SCREENSHOT_URL:+"-DPELLUCID_SCREENSHOT_URL=$PELLUCID_SCREENSHOT_URL"} >/dev/null
 cmake --build "$build" --target "${targets[@]}"
 for program in "$build"/bin/*; do
     if grep -qaF "$PWD/" "$program"; then

@@ -19,10 +19,12 @@ struct Target {
     const TfSnippet* snippet = nullptr;
 
     std::string name() const { return format != nullptr ? format->name : snippet->name + std::string(kPython); }
-    std::string title() const { return format != nullptr ? format->title : snippet->title; }
+    std::string inWords() const {
+        return format != nullptr ? format->inWords : std::string("lines of Python for ") + snippet->console;
+    }
     std::string suffix() const { return format != nullptr ? format->suffix : ".py"; }
     WrittenTf write(const TfToWrite& tf) const {
-        return format != nullptr ? writtenTf(*format, tf) : WrittenTf{snippet->text(tf), {}};
+        return format != nullptr ? writtenTf(*format, tf) : writtenTf(*snippet, tf);
     }
 };
 
@@ -43,8 +45,8 @@ Target targetNamed(const std::string& name) {
 
 /// A transfer function, and what it is written for.
 struct Source {
-    TransferFunction tf; ///< opacities of one reference length of `geometry`
-    std::optional<ValueRange> window;
+    TransferFunction tf;                    ///< opacities of one reference length of `geometry`
+    std::optional<ValueRange> window, data; ///< of the volume: what it is shown through, and all its values
     std::optional<Geometry> geometry;
     std::vector<std::string> notices;
 };
@@ -65,6 +67,7 @@ Source sourceOf(const TfConversion& conversion, const SceneOptions& options, Pro
     }
     if (!conversion.volume) {
         if (isAutomatic) throw UsageError("what the data propose needs data", "TF auto", "add --volume FILE");
+        if (read->positions) source.notices.push_back(noDomainNotice(*read->positions, {}));
         source.tf = asWritten(*read, unknownVolume());
         return source;
     }
@@ -73,8 +76,10 @@ Source sourceOf(const TfConversion& conversion, const SceneOptions& options, Pro
     if (isAutomatic) ofVolume.tf.spec = spec;
     const Opened opened = resolve(ofVolume, progress, {.use = {}, .byEngine = false, .needsTf = isAutomatic});
     source.geometry = opened.scene.volume->geometry();
-    source.window = opened.scene.volume->range();
+    source.data = opened.scene.volume->dataRange();
+    source.window = read && read->spansData ? *source.data : opened.scene.volume->range();
     source.tf = read ? asWritten(*read, *source.geometry) : opened.scene.tf;
+    if (read && read->positions) source.notices.push_back(noDomainNotice(*read->positions, source.window));
     addTo(source.notices, opened.notices());
     return source;
 }
@@ -90,7 +95,7 @@ Answer convertTf(const TfConversion& conversion, const SceneOptions& options, co
     if (!options.volume.path) throw UsageError("no transfer function is named", "TF", "give a file, such as a.tf.json");
     const Target target = atOption("--to " + conversion.format, [&] { return targetNamed(conversion.format); });
     const Source source = sourceOf(conversion, options, progress);
-    const TfToWrite writing(source.tf, source.window, source.geometry, presetNameOf(out));
+    const TfToWrite writing(source.tf, source.window, source.geometry, presetNameOf(out), source.data);
     const WrittenTf written = target.write(writing);
     writeTextAtomically(out, written.text);
     std::vector<std::string> losses = source.notices;
@@ -104,8 +109,9 @@ Answer convertTf(const TfConversion& conversion, const SceneOptions& options, co
     if (writing.hasRange()) json["range"] = {writing.range().lo, writing.range().hi};
     std::vector<std::string> notices = std::move(losses);
     if (!lowerCase(out).ends_with(target.suffix()))
-        notices.push_back(target.title() + " looks for files that end in " + target.suffix());
-    return {"wrote " + out + ": a transfer function for " + target.title() + "\n", std::move(json), std::move(notices)};
+        notices.push_back("its name does not end in " + target.suffix() + ", as that of " + target.inWords() +
+                          " should");
+    return {"wrote " + out + ": " + target.inWords() + "\n", std::move(json), std::move(notices)};
 }
 
 } // namespace pellucid::cli

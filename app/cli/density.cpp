@@ -95,7 +95,7 @@ Answer run(const Options& o, Progress& progress) {
                               " opaque; the nearest one was taken");
         if (o.outTf)
             addTo(notices, writeTfFile(withShownOpacities(scene.tf, chosen->opacity), input.volume->range(), *o.outTf,
-                                       input.volume->geometry()));
+                                       input.volume->geometry(), input.volume->dataRange()));
     }
     seconds.total = total.seconds();
 

@@ -38,6 +38,7 @@ Command addDescribe(CLI::App& program) {
         "describe", "Says in words what the picture shows: a caption, and with --json also a short alternative text");
     const auto o = std::make_shared<SceneOptions>();
     o->addForFigures(*app);
+    o->picture.addLook(*app); // the words of a picture that was drawn can be given again
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -41,13 +41,16 @@ Answer run(const Options& o, Progress& progress) {
               {"page_mm", {figure.width, figure.height}},
               {"pixels", {figure.pixels.width, figure.pixels.height}},
               {"features", jsonFromRows(figure.rows)},
+              {"notices", figure.notices},
               {"volume", jsonFromVolume(*scene.volume)}};
     if (figure.scale) json["scale"] = {{"mm", figure.scale->millimetres}, {"text", figure.scale->text}};
     if (!figure.caption.empty()) json["caption"] = figure.caption;
+    std::vector<std::string> notices = opened.notices();
+    notices.insert(notices.end(), figure.notices.begin(), figure.notices.end());
     return {"wrote " + o.out + ": " + millimetres(figure.width) + " x " + millimetres(figure.height) +
                 " mm, the picture in " + std::to_string(figure.pixels.width) + " x " +
                 std::to_string(figure.pixels.height) + " pixels\n",
-            std::move(json), opened.notices()};
+            std::move(json), std::move(notices)};
 }
 
 } // namespace

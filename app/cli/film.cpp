@@ -29,6 +29,7 @@ struct Options {
 /// What can be told before the volume is read.
 void check(const Options& o) {
     if (o.out.empty()) throw isRequired("--out", "film");
+    atOption("--out", [&] { checkFilmSuffix(o.out); });
     const FilmKind kind = o.film.values().kind;
     refuse(
         {{kind == FilmKind::Views && !o.views, "a way from view to view needs the views", "--kind", "add --views"},

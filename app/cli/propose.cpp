@@ -105,7 +105,8 @@ Answer run(const Options& o, Progress& progress) {
     if (holder) proposal.why.push_back(textOf(*holder));
     const double seconds = looking.seconds();
     std::vector<std::string> notices = opened.notices();
-    if (o.outTf) addTo(notices, writeTfFile(proposal.tf, proposal.window, *o.outTf, volume.geometry()));
+    if (o.outTf)
+        addTo(notices, writeTfFile(proposal.tf, proposal.window, *o.outTf, volume.geometry(), volume.dataRange()));
     Json json = jsonOf(proposal, sight.shares, seconds);
     json.update(jsonFromView(home.camera, volume.geometry()));
     if (holder)

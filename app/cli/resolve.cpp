@@ -109,8 +109,7 @@ namespace {
 /// What is to be said of a transfer function of another program; it is read once more for that.
 std::vector<std::string> tfNotices(const std::optional<std::string>& spec, const Scene& scene) {
     std::error_code failure;
-    if (!spec || !std::filesystem::is_regular_file(spec->substr(0, spec->rfind('#')), failure) || !isForeignTf(*spec))
-        return {};
+    if (!spec || !std::filesystem::is_regular_file(fileOfTf(*spec), failure) || !isForeignTf(*spec)) return {};
     return openingNoticesIn(scene, readTfNamed(*spec));
 }
 

@@ -67,7 +67,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addShare(CLI::App& program) {
     CLI::App* app =
-        program.add_subcommand("share", "One HTML file that shows the volume in any browser, without a network");
+        program.add_subcommand("share", "One HTML file that shows the volume in a browser, without a network");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
     o->scene.picture.addLook(*app);

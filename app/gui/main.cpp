@@ -42,6 +42,7 @@ bool displayMissing() {
 #endif
 }
 
+/// In the words of docs/man/pellucid.1; a test compares them.
 void describe(QCommandLineParser& parser) {
     parser.setApplicationDescription(
         "Shows volumes, measures what catches the eye in them, and finds transfer functions.\n"
@@ -54,8 +55,7 @@ void describe(QCommandLineParser& parser) {
     parser.addOption(
         {"tf",
          "Transfer function: a *.tf.json file or one of another program, auto (what the data propose, the default), "
-         "tents:N[:PEAK], "
-         "ramp:N or preset:NAME.",
+         "tents:N[:PEAK], ramp:N or preset:NAME.",
          "SPEC"});
     parser.addOption({"session",
                       "Continue with a saved session, a *.pellucid.json file or a PNG picture that carries one.",
@@ -67,8 +67,8 @@ void describe(QCommandLineParser& parser) {
     parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
     parser.addOption({"theme", "Colours of the window: dark, light or system; without it, as chosen last.", "NAME"});
     parser.addOption({"size", "Size of the window in pixels.", "WxH"});
-    parser.addOption(
-        {"screenshot", "Wait until picture and figures are complete, save the window as PNG FILE, and quit.", "FILE"});
+    parser.addOption({"screenshot",
+                      "Wait until picture and figures are complete, save the window as a PNG file, and quit.", "FILE"});
     parser.addHelpOption();
     parser.addVersionOption();
 }

@@ -1,6 +1,9 @@
 #include "figure/figure_file.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <string_view>
 
 #include "base/atomic_file.h"
 #include "base/text.h"
@@ -65,6 +68,30 @@ AnnotationInput aroundOf(const PictureInput& picture, const FigureContent& conte
 }
 
 } // namespace
+
+std::string fontNotice(const std::string& font) {
+    static constexpr std::array<std::string_view, 10> kGeneric{"sans",  "sans-serif", "serif",   "monospace", "mono",
+                                                               "emoji", "cursive",    "fantasy", "system-ui", "math"};
+    const auto plain = [](std::string name) { // fontconfig compares families without blanks
+        std::erase(name, ' ');
+        return lowerCase(name);
+    };
+    const std::vector<std::string> taken = familyOf(font);
+    const auto isTaken = [&](const std::string& name) {
+        return std::ranges::any_of(taken, [&](const std::string& other) { return plain(other) == plain(name); });
+    };
+    std::vector<std::string> wanted;
+    for (const std::string& family : splitAt(',', font)) {
+        const std::string name = trimmed(family);
+        if (name.empty()) continue;
+        if (isTaken(name) || std::ranges::find(kGeneric, plain(name)) != kGeneric.end()) return {};
+        wanted.push_back(printable(name));
+    }
+    if (wanted.empty() || taken.empty()) return {};
+    return (wanted.size() == 1 ? "the font " + wanted[0] + " is not"
+                               : "none of the fonts " + joined(wanted, ", ") + " is") +
+           " installed: the letters are in " + printable(taken.front());
+}
 
 void checkFigureSuffix(const std::string& path) {
     const std::string suffix = suffixOf(path);
@@ -139,13 +166,16 @@ FigureFile makeFigure(const FigureTask& task, const JobControl& job) {
     job.throwIfStopped();
     writeTextAtomically(task.path, bytes);
     job.report(1);
-    return {figurePixels(task.settings),
-            figure.width,
-            figure.height,
-            content.rows,
-            figure.scale,
-            content.caption,
-            bytes.size()};
+    FigureFile file{figurePixels(task.settings),
+                    figure.width,
+                    figure.height,
+                    content.rows,
+                    figure.scale,
+                    content.caption,
+                    bytes.size(),
+                    {}};
+    if (std::string notice = fontNotice(task.settings.font); !notice.empty()) file.notices.push_back(std::move(notice));
+    return file;
 }
 
 } // namespace pellucid

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/job.h"
 #include "figure/figure_layout.h"
@@ -26,6 +27,10 @@ void checkFigure(const FigureTask& task);
 /// extentOf() do, and Cancelled.
 FigureContent figureContent(const FigureTask& task, Workspace& workspace, const JobControl& job = {});
 
+/// That none of these families is installed, and which one stands in; empty: one is. Generic names, as sans, stand for
+/// any font.
+std::string fontNotice(const std::string& font);
+
 struct FigureFile {
     FigurePixels pixels;          ///< of the picture
     double width = 0, height = 0; ///< of the page, mm
@@ -33,6 +38,7 @@ struct FigureFile {
     std::optional<FigureScale> scale;
     std::string caption; ///< empty: not asked for
     std::size_t bytes = 0;
+    std::vector<std::string> notices; ///< what is not as it was asked for
 };
 /// Writes it; the file is whole or absent. Throws as figureContent() does, and FileError.
 FigureFile makeFigure(const FigureTask& task, const JobControl& job = {});

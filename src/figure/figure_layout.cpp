@@ -17,6 +17,7 @@ constexpr Rgb kInk{0, 0, 0}, kFaintInk{0.35, 0.35, 0.35}, kRule{0.6, 0.6, 0.6}, 
 constexpr Rgb kThinBar{0.45, 0.45, 0.45};
 constexpr double kCapitalOfFont = 0.7; // about what a capital has of the size of its font
 constexpr double kRim = 0.05;          // width of lines around areas, in sizes of the font
+constexpr double kEdge = 0.15;         // between lines and the edge of the page, which viewers and printers cut
 constexpr double kSmall = 0.9;         // of headings of columns and of numbers at axes
 constexpr int kMostCaptionLines = 24;
 
@@ -248,8 +249,8 @@ private:
     void addRow(const FigureRow& row, const Columns& columns, double height, bool bars) {
         const double baseline = m_y + height / 2 + m_capital / 2, middle = m_y + height / 2;
         FigureGroup& all = group("feature-" + std::to_string(++m_row), labelOf(row));
-        const double edge = kRim * m_em / 2; // the rim lies on the page
-        addRimmed(all, {edge, middle - 0.45 * m_em, 0.9 * m_em, middle + 0.45 * m_em}, row.color);
+        const double left = (kEdge + kRim / 2) * m_em;
+        addRimmed(all, {left, middle - 0.45 * m_em, left + 0.9 * m_em, middle + 0.45 * m_em}, row.color);
         FigureText name = textOf(row.name, {columns.name, baseline});
         name.width = columns.nameWidth + 0.05 * m_em; // rounding cuts no letter
         all.elements.push_back(name);

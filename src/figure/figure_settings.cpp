@@ -14,10 +14,14 @@ FigureParts figurePartsOf(const std::string& text) {
     for (const std::string& word : splitAt(',', text)) {
         const std::string name = trimmed(word);
         if (name == "picture") continue;
+        if (name == "all") {
+            for (const FigurePartInfo& part : kFigureParts) parts.*part.shown = true;
+            continue;
+        }
         const auto part = std::ranges::find_if(kFigureParts, [&](const FigurePartInfo& p) { return name == p.name; });
         if (part == kFigureParts.end())
             throw UsageError(inQuotes(name) + " is no part of a figure", "",
-                             "give some of picture, " + joined(kFigureParts, ", ", &FigurePartInfo::name) +
+                             "give all, or some of picture, " + joined(kFigureParts, ", ", &FigurePartInfo::name) +
                                  " with commas between");
         parts.*part->shown = true;
     }
@@ -63,7 +67,9 @@ std::span<const Setting> settingsOf<FigureSettings>() {
         {.key = "font",
          .at = member<&F::font>,
          .words = "F&ont",
-         .help = "Families of fonts with commas between; the first that is installed counts.",
+         .help =
+             "Families of fonts with commas between; the first that is installed counts. Where none is, another one "
+             "stands in, and a note says which.",
          .checkText =
              [](const std::string& text) {
                  if (text.size() > 200) throw UsageError("the names of fonts are too long", "", "name one or two");
@@ -72,9 +78,9 @@ std::span<const Setting> settingsOf<FigureSettings>() {
          .at = member<&F::parts>,
          .words = "&Parts",
          .help =
-             "What the figure has, with commas between: picture, title, scale, letters, cube, axes, measures, "
-             "legend, shares, targets, colors, caption. The picture is always there; targets stand among the bars of "
-             "shares.",
+             "What the figure has: all, or some of picture, title, scale, letters, cube, axes, measures, legend, "
+             "shares, targets, colors, caption with commas between. The picture is always there; targets stand among "
+             "the bars of shares.",
          .checkText = [](const std::string& text) { figurePartsOf(text); }},
         {.key = "title",
          .at = member<&F::title>,

@@ -36,7 +36,8 @@ inline constexpr std::array<FigurePartInfo, 11> kFigureParts{
      {"targets", "Targets of shares", "Upright lines at the wanted shares; they need the bars", &FigureParts::targets},
      {"colors", "Colour scale", "Colours and opacities over the values", &FigureParts::colors},
      {"caption", "Caption", "What the picture shows, in measured words", &FigureParts::caption}}};
-/// "scale,legend"; "picture" may be among them, and stands for nothing more. Throws UsageError without a place.
+/// "scale,legend", or "all"; "picture" may be among them, and stands for nothing more. Throws UsageError without a
+/// place.
 FigureParts figurePartsOf(const std::string& text);
 /// Names with commas between, in the order of kFigureParts; "picture" where there are none.
 std::string textOf(const FigureParts& parts);

@@ -73,4 +73,10 @@ Image rasterOf(const Figure& figure, int width) {
     return image;
 }
 
+std::vector<std::string> familyOf(const std::string& font) {
+    std::vector<std::string> names;
+    require(library().family(font, names));
+    return names;
+}
+
 } // namespace pellucid

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "figure/print_library.h"
 
@@ -16,5 +17,7 @@ std::string outlineOf(const FigureText& text, const std::string& font);
 std::string pdfOf(const Figure& figure);
 /// As it looks on white paper, `width` pixels wide.
 Image rasterOf(const Figure& figure, int width);
+/// The names of the font that letters of these families have, the usual one first.
+std::vector<std::string> familyOf(const std::string& font);
 
 } // namespace pellucid

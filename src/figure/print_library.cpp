@@ -11,7 +11,9 @@
 
 #include <cairo-pdf.h>
 #include <cairo.h>
+#include <fontconfig/fontconfig.h>
 #include <pango/pangocairo.h>
+#include <pango/pangofc-font.h>
 
 namespace pellucid {
 
@@ -27,6 +29,7 @@ struct CairoDeleter {
     void operator()(cairo_path_t* p) const { cairo_path_destroy(p); }
     void operator()(cairo_font_options_t* o) const { cairo_font_options_destroy(o); }
     void operator()(PangoLayout* l) const { g_object_unref(l); }
+    void operator()(PangoFont* f) const { g_object_unref(f); }
     void operator()(PangoFontDescription* d) const { pango_font_description_free(d); }
 };
 template <class T>
@@ -38,6 +41,14 @@ std::string errorOf(cairo_status_t status) {
 
 // ---------------------------------------------------------------------------------------------------------- texts
 
+Owned<PangoFontDescription> descriptionOf(const std::string& font, double points, bool bold) {
+    Owned<PangoFontDescription> description(pango_font_description_new());
+    pango_font_description_set_family(description.get(), font.c_str());
+    pango_font_description_set_absolute_size(description.get(), points * PANGO_SCALE);
+    if (bold) pango_font_description_set_weight(description.get(), PANGO_WEIGHT_BOLD);
+    return description;
+}
+
 /// In points; letters have the shapes and distances of the font at any size.
 Owned<PangoLayout> layoutOf(cairo_t* cr, const FigureText& text, const std::string& font) {
     Owned<PangoLayout> layout(pango_cairo_create_layout(cr));
@@ -48,11 +59,7 @@ Owned<PangoLayout> layoutOf(cairo_t* cr, const FigureText& text, const std::stri
     cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
     pango_cairo_context_set_font_options(context, options.get());
     pango_context_set_round_glyph_positions(context, FALSE);
-    const Owned<PangoFontDescription> description(pango_font_description_new());
-    pango_font_description_set_family(description.get(), font.c_str());
-    pango_font_description_set_absolute_size(description.get(), text.points * PANGO_SCALE);
-    if (text.bold) pango_font_description_set_weight(description.get(), PANGO_WEIGHT_BOLD);
-    pango_layout_set_font_description(layout.get(), description.get());
+    pango_layout_set_font_description(layout.get(), descriptionOf(font, text.points, text.bold).get());
     pango_layout_set_text(layout.get(), text.text.c_str(), static_cast<int>(text.text.size()));
     if (text.width > 0) {
         pango_layout_set_width(layout.get(), static_cast<int>(std::lround(text.width * kPointsPerMm * PANGO_SCALE)));
@@ -113,6 +120,26 @@ std::string measureText(const FigureText& text, const std::string& font, TextExt
     extent.baseline = fromPango(pango_layout_get_baseline(layout.get())) * kMmPerPoint;
     extent.capital = capitalOf(cr.get(), text, font);
     return errorOf(cairo_status(cr.get()));
+}
+
+/// Fonts may have several names: "DejaVu Sans" and "DejaVu Sans Condensed".
+std::string familyOf(const std::string& font, std::vector<std::string>& names) {
+    const Owned<cairo_t> cr = sketch();
+    const Owned<PangoLayout> layout(pango_cairo_create_layout(cr.get()));
+    const Owned<PangoFont> chosen(pango_context_load_font(pango_layout_get_context(layout.get()),
+                                                          descriptionOf(font, FigureText().points, false).get()));
+    if (chosen == nullptr) return {};
+    if (PANGO_IS_FC_FONT(chosen.get())) {
+        FcPattern* const pattern = pango_fc_font_get_pattern(PANGO_FC_FONT(chosen.get()));
+        FcChar8* name = nullptr;
+        for (int n = 0; FcPatternGetString(pattern, FC_FAMILY, n, &name) == FcResultMatch; ++n)
+            names.emplace_back(reinterpret_cast<const char*>(name));
+    }
+    if (names.empty()) {
+        const Owned<PangoFontDescription> description(pango_font_describe(chosen.get()));
+        names.emplace_back(pango_font_description_get_family(description.get()));
+    }
+    return {};
 }
 
 /// Millimetres, to a ten-thousandth.
@@ -318,7 +345,7 @@ std::string drawRaster(const Figure& figure, Image& image) {
     return {};
 }
 
-constexpr PrintLibrary kLibrary{measureText, outlineText, writePdf, drawRaster};
+constexpr PrintLibrary kLibrary{measureText, outlineText, writePdf, drawRaster, familyOf};
 
 } // namespace
 

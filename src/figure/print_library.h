@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "figure/figure.h"
 
@@ -24,6 +25,9 @@ struct PrintLibrary {
     std::string (*pdf)(const Figure& figure, std::string& bytes);
     /// On white paper. `image` has its size already.
     std::string (*raster)(const Figure& figure, Image& image);
+    /// The names of the font that is taken where these families are asked for, the usual one first; none: there is no
+    /// font at all.
+    std::string (*family)(const std::string& font, std::vector<std::string>& names);
 };
 
 /// The name under which the library has them: a function without arguments that returns `const PrintLibrary*`.

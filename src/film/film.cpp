@@ -288,6 +288,7 @@ std::optional<UnfinishedFilm> unfinishedFilm(const FilmTask& task) {
 
 void checkFilm(const FilmTask& task) {
     if (task.path.empty()) throw UsageError("the film has no name", "", "name a file that ends in .mp4, or a folder");
+    checkFilmSuffix(task.path);
     const FilmFile file = filmFileOf(task.path);
     if (needsMovieWriter(file) && !hasMovieWriter())
         throw Error("ffmpeg, which writes films, is not installed", task.path,

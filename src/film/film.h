@@ -79,8 +79,9 @@ struct FilmResult {
     std::vector<std::string> passedOver; ///< frames that could not be read: "frame 3: …"
 };
 
-/// What can be told before any work: throws Error where a film is wanted and no ffmpeg is there, where the session
-/// shows a field in the place of the data, for a size that is none, and to resume where another film was begun.
+/// What can be told before any work: throws UsageError as checkFilmSuffix() does, and Error where a film is wanted and
+/// no ffmpeg is there, where the session shows a field in the place of the data, for a size that is none, and to resume
+/// where another film was begun.
 void checkFilm(const FilmTask& task);
 std::string pictureName(int picture);                            ///< "picture_00012.png"
 std::string pictureFileOf(const std::string& path, int picture); ///< that in the folder `path`

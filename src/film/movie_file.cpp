@@ -1,5 +1,6 @@
 #include "film/movie_file.h"
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -7,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include <unistd.h>
 
@@ -166,6 +168,17 @@ FilmFile filmFileOf(const std::string& path) {
     if (suffix == ".webm") return FilmFile::WebM;
     if (suffix == ".gif") return FilmFile::Gif;
     return suffix == ".apng" || suffix == ".png" ? FilmFile::AnimatedPng : FilmFile::Pictures;
+}
+
+void checkFilmSuffix(const std::string& path) {
+    static constexpr std::array<std::string_view, 17> kOthers{".avi", ".mov", ".qt",   ".mkv",  ".wmv", ".asf",
+                                                              ".m4v", ".ogv", ".flv",  ".f4v",  ".mpg", ".mpe",
+                                                              ".mpv", ".m2v", ".mpeg", ".m2ts", ".3gp"};
+    const std::string suffix = lowerCase(fs::path(path).extension().string());
+    if (std::ranges::find(kOthers, suffix) != kOthers.end())
+        throw UsageError("films are not written as " + suffix, path,
+                         "give a name that ends in .mp4, .webm, .gif or .apng, or one without a suffix for a folder of "
+                         "pictures");
 }
 
 bool needsMovieWriter(FilmFile file) {

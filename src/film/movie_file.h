@@ -31,6 +31,8 @@ enum class FilmFile {
     AnimatedPng ///< .apng, .png: lossless, by our own code
 };
 FilmFile filmFileOf(const std::string& path);
+/// Throws UsageError where the name ends as a film that is not written: it would become a folder.
+void checkFilmSuffix(const std::string& path);
 bool needsMovieWriter(FilmFile file);  ///< ffmpeg
 bool isMovie(const std::string& path); ///< whether it ends in .mp4
 bool hasMovieWriter();                 ///< whether there is an ffmpeg in PATH

@@ -13,6 +13,7 @@
 #include <gdcmTrace.h>
 
 #include "base/text.h"
+#include "volume/formats/content.h"
 #include "volume/formats/file_check.h"
 #include "volume/formats/text_header.h"
 
@@ -69,14 +70,42 @@ std::optional<double> numberOf(const DataSet& set, const Tag& tag) {
     return numbers.empty() ? std::nullopt : std::optional(numbers.front());
 }
 
-/// Of an element of binary numbers, the first one; the library has turned its bytes as they are here.
+/// The binary numbers of an element; the library has turned their bytes as they are here.
+template <class T>
+std::vector<T> binariesOf(const DataSet& set, const Tag& tag) {
+    const std::string bytes = bytesOf(set, tag);
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    return values;
+}
+
 template <class T>
 std::optional<T> binaryOf(const DataSet& set, const Tag& tag) {
-    const std::string bytes = bytesOf(set, tag);
-    if (bytes.size() < sizeof(T)) return {};
-    T value{};
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return value;
+    const std::vector<T> values = binariesOf<T>(set, tag);
+    return values.empty() ? std::nullopt : std::optional(values.front());
+}
+
+/// Where a maker of scanners has put an element of its own: behind one that names it.
+std::optional<Tag> privateTag(const DataSet& set, std::uint16_t group, const char* maker, std::uint16_t element) {
+    for (std::uint16_t from = 0x10;;) {
+        const Tag found = set.FindNextDataElement(Tag(group, from)).GetTag();
+        const std::uint16_t block = found.GetElement();
+        if (found.GetGroup() != group || block > 0xff) return {};
+        if (textOf(set, found) == maker) return Tag(group, static_cast<std::uint16_t>(block << 8 | element));
+        from = static_cast<std::uint16_t>(block + 1);
+    }
+}
+
+/// Of diffusion; many scanners have it in elements of their makers alone.
+std::optional<double> bValueOf(const DataSet& set) {
+    if (const auto value = binaryOf<double>(set, Tag(0x0018, 0x9087))) return value;
+    if (const auto tag = privateTag(set, 0x0019, "SIEMENS MR HEADER", 0x0c))
+        if (const auto value = numberOf(set, *tag)) return value;
+    if (const auto tag = privateTag(set, 0x0043, "GEMS_PARM_01", 0x39))
+        if (const auto value = numberOf(set, *tag)) return std::fmod(*value, 1e9); // which newer scanners add
+    if (const auto tag = privateTag(set, 0x2001, "Philips Imaging DD 001", 0x03))
+        if (const auto value = binaryOf<float>(set, *tag)) return *value;
+    return {};
 }
 
 std::int64_t wholeOf(const DataSet& set, const Tag& tag) {
@@ -146,13 +175,58 @@ void takeScaling(DicomFrame& frame, const DataSet& set) {
     if (const auto intercept = numberOf(set, Tag(0x0028, 0x1052))) frame.intercept = *intercept;
 }
 
+/// What the Modality LUT of a file says; nothing where there is none.
+std::shared_ptr<const DicomTable> tableIn(const DataSet& set, bool isSigned, const std::string& path) {
+    const std::vector<DataSet> items = itemsOf(set, Tag(0x0028, 0x3000), 1);
+    if (items.empty()) return {};
+    // How many values there are (0: 65536), the number of the first one, and the bits of each.
+    const auto described = binariesOf<std::uint16_t>(items.front(), Tag(0x0028, 0x3002));
+    const std::string bytes = bytesOf(items.front(), Tag(0x0028, 0x3006));
+    const std::size_t count = described.empty() || described[0] == 0 ? 65536 : described[0];
+    if (described.size() < 3 || bytes.size() < count)
+        throw FileError("the table of its values (Modality LUT) is damaged, or cut off", path,
+                        "copy the file again, or export the series again");
+    DicomTable table;
+    table.first = isSigned ? static_cast<std::int16_t>(described[1]) : described[1];
+    if (bytes.size() >= 2 * count) {
+        table.values = binariesOf<std::uint16_t>(items.front(), Tag(0x0028, 0x3006));
+    } else if (described[2] <= 8) { // two in a word
+        for (const char byte : bytes) table.values.push_back(static_cast<unsigned char>(byte));
+    } else {
+        throw FileError("the table of its values (Modality LUT) has " + std::to_string(bytes.size()) + " of " +
+                            std::to_string(2 * count) + " bytes",
+                        path, "copy the file again, or export the series again");
+    }
+    table.values.resize(count);
+    const auto [least, greatest] = std::ranges::minmax(table.values);
+    table.least = least;
+    table.greatest = greatest;
+    return std::make_shared<const DicomTable>(std::move(table));
+}
+
+/// The stored numbers that stand for none (Pixel Padding Value, Pixel Padding Range Limit).
+std::optional<std::array<double, 2>> paddingIn(const DataSet& set, const DicomPixels& pixels) {
+    const auto number = [&](std::uint16_t element) -> std::optional<double> {
+        const auto value = binaryOf<std::uint16_t>(set, Tag(0x0028, element));
+        if (!value) return {};
+        return pixels.isSigned ? static_cast<double>(static_cast<std::int16_t>(*value)) : *value;
+    };
+    const std::optional<double> value = number(0x0120);
+    if (!value) return {};
+    const double limit = number(0x0121).value_or(*value);
+    const ValueRange stored = storedRange(pixels);
+    const double first = std::max(std::min(*value, limit), stored.lo),
+                 last = std::min(std::max(*value, limit), stored.hi);
+    return first <= last ? std::optional(std::array{first, last}) : std::nullopt;
+}
+
 void setTime(DicomFrame& frame, DicomTime time, std::optional<double> value) {
     if (value && std::isfinite(*value)) frame.times[static_cast<std::size_t>(time)] = value;
 }
 
 void takeTimes(DicomFrame& frame, const DataSet& set) {
     setTime(frame, DicomTime::TemporalPosition, numberOf(set, Tag(0x0020, 0x0100)));
-    setTime(frame, DicomTime::BValue, binaryOf<double>(set, Tag(0x0018, 0x9087)));
+    setTime(frame, DicomTime::BValue, bValueOf(set));
     setTime(frame, DicomTime::TriggerTime, numberOf(set, Tag(0x0018, 0x1060)));
     setTime(frame, DicomTime::EchoTime, numberOf(set, Tag(0x0018, 0x0081)));
     setTime(frame, DicomTime::AcquisitionNumber, numberOf(set, Tag(0x0020, 0x0012)));
@@ -204,6 +278,13 @@ DicomPixels pixelsIn(const DataSet& set, const std::string& path) {
     if (pixels.bitsStored < 1 || pixels.bitsStored > pixels.bitsAllocated)
         throw FileError("the header says that " + std::to_string(pixels.bitsStored) + " of " +
                             std::to_string(pixels.bitsAllocated) + " bits are used",
+                        path, "correct the header, or export the series again");
+    const int highBit = number(0x0102, pixels.bitsStored - 1);
+    pixels.lowestBit = highBit + 1 - pixels.bitsStored;
+    if (pixels.lowestBit < 0 || highBit >= pixels.bitsAllocated)
+        throw FileError("the header says that the " + std::to_string(pixels.bitsStored) + " bits in use of " +
+                            std::to_string(pixels.bitsAllocated) + " end with bit " + std::to_string(highBit) +
+                            " (HighBit)",
                         path, "correct the header, or export the series again");
     if (pixels.samples < 1 || pixels.samples > 4)
         throw FileError("the header gives " + std::to_string(pixels.samples) + " samples for each pixel", path,
@@ -274,10 +355,17 @@ void takeStorage(DicomFrame& frame, const gdcm::Reader& reader) {
 
 } // namespace
 
+ValueRange storedRange(const DicomPixels& pixels) {
+    const double half = std::ldexp(1.0, pixels.bitsStored - 1);
+    return pixels.isSigned ? ValueRange{-half, half - 1} : ValueRange{0, 2 * half - 1};
+}
+
 std::vector<DicomFrame> readDicomHeader(const std::string& path) {
     gdcm::Reader reader;
-    if (!readUpToPixels(reader, path))
+    if (!readUpToPixels(reader, path)) {
+        if (contentOf(path) != kDicomContent) throw notOfFormat("a DICOM file", path, fileHead(path, 1024));
         throw FileError("the header of this DICOM file cannot be read", path, "copy the file again");
+    }
     const DataSet& set = reader.GetFile().GetDataSet();
     const bool hasPixels = reader.GetStreamCurrentPosition() != static_cast<std::size_t>(-1); // else it has met the end
     if (!hasPixels || !set.FindDataElement(Tag(0x0028, 0x0010)) || !set.FindDataElement(Tag(0x0028, 0x0011))) return {};
@@ -300,8 +388,10 @@ std::vector<DicomFrame> readDicomHeader(const std::string& path) {
     frame.thickness = thicknessIn(set);
     takeScaling(frame, set);
     if (const auto dose = numberOf(set, Tag(0x3004, 0x000e)); dose && *dose > 0) frame.slope = *dose;
-    if (const auto padding = binaryOf<std::uint16_t>(set, Tag(0x0028, 0x0120)))
-        frame.padding = frame.pixels.isSigned ? static_cast<double>(static_cast<std::int16_t>(*padding)) : *padding;
+    if (frame.pixels.samples == 1) {
+        frame.table = tableIn(set, frame.pixels.isSigned, path);
+        frame.padding = paddingIn(set, frame.pixels);
+    }
     takeTimes(frame, set);
 
     constexpr double kMostFrames = 1'000'000;

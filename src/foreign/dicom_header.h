@@ -3,11 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "volume/grid.h"
+#include "volume/volume.h"
 
 namespace pellucid {
 
@@ -30,9 +31,22 @@ struct DicomPixels {
     int samples = 1;       ///< for each pixel
     int bitsAllocated = 0; ///< 8, 16 or 32
     int bitsStored = 0;
+    int lowestBit = 0; ///< of those that are stored, in those that are allocated
     bool isSigned = false;
     bool areBits = false; ///< eight to a byte; bitsAllocated is 8, as they come out
     bool operator==(const DicomPixels&) const = default;
+};
+
+/// The range of the numbers that may be stored.
+ValueRange storedRange(const DicomPixels& pixels);
+
+/// The values of stored numbers, from `first` on (Modality LUT). Those below have the first value, those above the
+/// last.
+struct DicomTable {
+    int first = 0;
+    std::vector<std::uint16_t> values;     ///< never empty
+    std::uint16_t least = 0, greatest = 0; ///< of these
+    bool operator==(const DicomTable&) const = default;
 };
 
 /// One picture: a file, or a frame of one. Lengths in mm; directions and places to the patient's left, back and head.
@@ -55,7 +69,10 @@ struct DicomFrame {
     std::optional<std::array<double, 2>> spacing; ///< from column to column, from row to row
     double thickness = 0;                         ///< from slice to slice, where the header says it; 0: it does not
     double slope = 1, intercept = 0;              ///< value = slope · stored + intercept
-    std::optional<double> padding;                ///< the stored number that stands for none
+    std::shared_ptr<const DicomTable> table;      ///< where given, the values are those of it instead
+    /// The stored numbers that stand for none, from the first to the last one, within storedRange(); never of several
+    /// samples.
+    std::optional<std::array<double, 2>> padding;
     std::array<std::optional<double>, kDicomTimes> times;
 };
 

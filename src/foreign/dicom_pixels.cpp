@@ -5,9 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <limits>
+#include <string_view>
 
 #include <gdcmImage.h>
 #include <gdcmReader.h>
+#include <gdcmSequenceOfFragments.h>
 
 #include "base/text.h"
 #include "foreign/foreign_volume.h"
@@ -99,12 +103,13 @@ std::vector<char> readPlain(const DicomFrame& frame) {
     return areShared ? spreadHues(read) : read;
 }
 
-/// Throws FileError unless the packed pictures are whole: decoders make up what is cut off.
-void requireWhole(const DicomFrame& frame) {
+/// Where the parts of the packed pictures begin, counted from the first one. Throws FileError unless they are whole:
+/// decoders make up what is cut off.
+std::vector<std::uint64_t> wholeParts(const DicomFrame& frame) {
     const std::uint64_t fileBytes = readableFileBytes(frame.file);
     std::ifstream in(frame.file, std::ios::binary);
-    const auto frames = static_cast<std::uint64_t>(frame.framesInFile);
-    std::uint64_t pictures = 0;
+    std::vector<std::uint64_t> parts;
+    std::uint64_t first = frame.pixelsAt;
     for (std::uint64_t at = frame.pixelsAt; at < fileBytes;) {
         std::array<unsigned char, 8> head{};
         in.seekg(static_cast<std::streamoff>(at));
@@ -115,14 +120,92 @@ void requireWhole(const DicomFrame& frame) {
             throw failure(frame, "the packed pixels are damaged, or cut off");
         if (isEnd) break;
         const std::uint64_t bytes = number(4) | static_cast<std::uint64_t>(number(6)) << 16;
-        const bool isTable = at == frame.pixelsAt && (bytes == 0 || bytes == 4 * frames); // of where pictures begin
-        pictures += isTable ? 0 : 1;
+        const std::uint64_t begin = at;
         at += head.size() + bytes;
+        if (begin == frame.pixelsAt)
+            first = at; // behind the table of where pictures begin, which may be empty
+        else
+            parts.push_back(begin - first);
         if (at > fileBytes) throw failure(frame, "the packed pixels are cut off");
     }
-    if (pictures < frames)
-        throw failure(frame,
-                      "there are " + std::to_string(pictures) + " of " + std::to_string(frames) + " packed pictures");
+    if (parts.size() < static_cast<std::size_t>(frame.framesInFile))
+        throw failure(frame, "there are " + std::to_string(parts.size()) + " of " + std::to_string(frame.framesInFile) +
+                                 " packed pictures");
+    return parts;
+}
+
+std::string_view bytesOf(const gdcm::DataElement& element) {
+    const gdcm::ByteValue* value = element.GetByteValue();
+    return value == nullptr || value->GetPointer() == nullptr
+               ? std::string_view()
+               : std::string_view(value->GetPointer(), value->GetLength());
+}
+
+/// Whether a part begins like a picture of JPEG, JPEG-LS or JPEG 2000.
+bool beginsPicture(std::string_view part) {
+    return part.starts_with("\xff\xd8\xff") || part.starts_with("\xff\x4f\xff\x51");
+}
+
+/// The parts, by their index, with which pictures begin: of one picture, by the tables of the file, by what parts begin
+/// with. Throws FileError where none of these tells.
+std::vector<std::size_t> firstParts(const DicomFrame& frame, const std::vector<std::uint64_t>& parts,
+                                    const gdcm::SequenceOfFragments& packed, const gdcm::DataSet& set) {
+    const auto frames = static_cast<std::size_t>(frame.framesInFile);
+    if (frames == 1) return {0};
+    const auto byTable = [&](std::string_view table, std::size_t width) {
+        std::vector<std::size_t> found;
+        for (std::size_t at = 0; table.size() == frames * width && at < table.size(); at += width) {
+            std::uint64_t offset = 0;
+            for (std::size_t i = width; i-- > 0;) offset = offset << 8 | static_cast<unsigned char>(table[at + i]);
+            const auto part = std::ranges::lower_bound(parts, offset);
+            if (part == parts.end() || *part != offset) return std::vector<std::size_t>{};
+            found.push_back(static_cast<std::size_t>(part - parts.begin()));
+        }
+        return found;
+    };
+    std::vector<std::size_t> byContent;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (beginsPicture(bytesOf(packed.GetFragment(i)))) byContent.push_back(i);
+    const gdcm::Tag extended(0x7fe0, 0x0001);
+    const std::string_view offsets = set.FindDataElement(extended) ? bytesOf(set.GetDataElement(extended)) : "";
+    for (const auto& first : {byTable(bytesOf(packed.GetTable()), 4), byTable(offsets, 8), byContent}) {
+        const bool ascends = std::ranges::adjacent_find(first, std::greater_equal<>()) == first.end();
+        if (first.size() == frames && first.front() == 0 && ascends) return first;
+    }
+    throw FileError("the packed pixels are in " + std::to_string(parts.size()) +
+                        " parts, and the file does not say which of them belong to each of its " +
+                        std::to_string(frames) + " pictures",
+                    frame.file, "export the series again without compression, or with one part for each picture");
+}
+
+/// The packed pictures, each in one part, as decoders want them: writers may cut them into several.
+gdcm::DataElement joinedParts(const DicomFrame& frame, const std::vector<std::uint64_t>& parts,
+                              const gdcm::DataSet& set) {
+    const gdcm::DataElement& data = set.GetDataElement(gdcm::Tag(0x7fe0, 0x0010));
+    if (parts.size() == static_cast<std::size_t>(frame.framesInFile)) return data;
+    const gdcm::SequenceOfFragments* packed = data.GetSequenceOfFragments();
+    if (packed == nullptr || packed->GetNumberOfFragments() != parts.size())
+        throw failure(frame, "the packed pixels are damaged");
+    const std::vector<std::size_t> first = firstParts(frame, parts, *packed, set);
+    const auto joined = gdcm::SequenceOfFragments::New();
+    for (std::size_t n = 0; n < first.size(); ++n) {
+        std::string picture;
+        for (std::size_t i = first[n]; i < (n + 1 < first.size() ? first[n + 1] : parts.size()); ++i) {
+            const std::string_view part = bytesOf(packed->GetFragment(i));
+            if (i > first[n] && beginsPicture(part))
+                throw failure(frame, "there are more packed pictures than the " + std::to_string(frame.framesInFile) +
+                                         " that the header says");
+            picture += part;
+        }
+        if (picture.size() >= std::numeric_limits<std::uint32_t>::max())
+            throw failure(frame, "a packed picture has more than 4 GB");
+        gdcm::Fragment fragment;
+        fragment.SetByteValue(picture.data(), static_cast<std::uint32_t>(picture.size()));
+        joined->AddFragment(fragment);
+    }
+    gdcm::DataElement element = data;
+    element.SetValue(*joined);
+    return element;
 }
 
 /// Of pixels that a library has to unpack.
@@ -130,14 +213,20 @@ std::vector<char> unpack(const DicomFrame& frame) {
     const DicomPixels& pixels = frame.pixels;
     const bool isEncapsulated = frame.storage == DicomFrame::Storage::Encapsulated;
     if (pixels.areBits) throw failure(frame, "packed pixels of one bit are not supported");
-    if (isEncapsulated) requireWhole(frame);
+    const std::vector<std::uint64_t> parts = isEncapsulated ? wholeParts(frame) : std::vector<std::uint64_t>{};
     gdcm::Reader reader;
     reader.SetFileName(frame.file.c_str());
     if (!reader.Read()) throw failure(frame, "the pixels of this DICOM file cannot be read");
-    const gdcm::DataElement& data = reader.GetFile().GetDataSet().GetDataElement(gdcm::Tag(0x7fe0, 0x0010));
+    const gdcm::DataSet& set = reader.GetFile().GetDataSet();
     const gdcm::TransferSyntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
     if (syntax == gdcm::TransferSyntax::RLELossless && pixels.samples > 1 && pixels.bitsAllocated > 8)
         throw failure(frame, "colours of more than 8 bits that are packed by RLE are not supported");
+    if (syntax == gdcm::TransferSyntax::RLELossless && parts.size() > static_cast<std::size_t>(frame.framesInFile))
+        throw failure(frame, "there are " + std::to_string(parts.size()) + " pictures packed by RLE instead of " +
+                                 std::to_string(frame.framesInFile));
+    if (isEncapsulated && syntax != gdcm::TransferSyntax::RLELossless && pixels.lowestBit > 0)
+        throw FileError("packed pixels of which the lowest bits are not used (HighBit) are not supported", frame.file,
+                        "export the series again without compression");
     const std::size_t wanted =
         samplesOf(pixels) * bytesPerSampleOf(pixels) * static_cast<std::size_t>(frame.framesInFile);
     // Not the library's own reader of images, which stops the program at odd values of elements that nobody needs.
@@ -148,15 +237,16 @@ std::vector<char> unpack(const DicomFrame& frame) {
     image.SetDimension(2, static_cast<unsigned>(frame.framesInFile));
     image.SetPixelFormat(gdcm::PixelFormat(
         static_cast<unsigned short>(pixels.samples), static_cast<unsigned short>(pixels.bitsAllocated),
-        static_cast<unsigned short>(pixels.bitsStored), static_cast<unsigned short>(pixels.bitsStored - 1),
-        pixels.isSigned ? 1 : 0));
+        static_cast<unsigned short>(pixels.bitsStored + pixels.lowestBit),
+        static_cast<unsigned short>(pixels.bitsStored + pixels.lowestBit - 1), pixels.isSigned ? 1 : 0));
     const auto colors = gdcm::PhotometricInterpretation::GetPIType(frame.photometric.c_str());
     if (colors == gdcm::PhotometricInterpretation::PI_END)
         throw failure(frame, "the colours " + inQuotes(frame.photometric) + " are not known");
     image.SetPhotometricInterpretation(colors);
     image.SetPlanarConfiguration(pixels.samples > 1 && frame.isPlanar ? 1 : 0);
     image.SetTransferSyntax(syntax);
-    image.SetDataElement(data);
+    image.SetDataElement(isEncapsulated ? joinedParts(frame, parts, set)
+                                        : set.GetDataElement(gdcm::Tag(0x7fe0, 0x0010)));
     if (image.GetBufferLength() < wanted) throw failure(frame, "the pixels are not of the size that the header says");
     std::vector<char> bytes(image.GetBufferLength());
     if (!image.GetBuffer(bytes.data())) throw failure(frame, "the pixels of this DICOM file are damaged");

@@ -45,7 +45,10 @@ std::vector<DicomFrame> framesIn(const std::vector<std::string>& files, const Be
         before(bytesOfFile(file));
         if (contentOf(file) != kDicomContent) continue;
         try {
-            const std::vector<DicomFrame> more = readDicomHeader(file);
+            std::vector<DicomFrame> more = readDicomHeader(file);
+            const auto table = frames.empty() ? nullptr : frames.back().table;
+            for (DicomFrame& frame : more) // most files of a series have the same one, which may be large
+                if (table && frame.table && (frame.table == table || *frame.table == *table)) frame.table = table;
             frames.insert(frames.end(), more.begin(), more.end());
         } catch (const FileError& fault) {
             faults.push_back(fault);
@@ -54,16 +57,19 @@ std::vector<DicomFrame> framesIn(const std::vector<std::string>& files, const Be
     return frames;
 }
 
-/// Pictures that can be in one volume have the same key.
+/// Pictures that can be in one volume have the same key, and directions that isAlong() takes for the same.
 std::string keyOf(const DicomFrame& frame) {
-    std::string key = frame.seriesUid + "|" + std::to_string(frame.pixels.columns) + "x" +
-                      std::to_string(frame.pixels.rows) + "x" + std::to_string(frame.pixels.samples) + "|" +
-                      std::to_string(frame.pixels.bitsAllocated) + (frame.pixels.isSigned ? "s" : "u");
-    if (!frame.axes) return key;
-    constexpr double kSteps = 200; // directions within about half a degree are the same
-    for (const Vec3& axis : *frame.axes)
-        for (int a = 0; a < 3; ++a) key += "|" + std::to_string(static_cast<long>(std::lround(axis[a] * kSteps)));
-    return key;
+    return frame.seriesUid + "|" + std::to_string(frame.pixels.columns) + "x" + std::to_string(frame.pixels.rows) +
+           "x" + std::to_string(frame.pixels.samples) + "|" + std::to_string(frame.pixels.bitsAllocated) +
+           (frame.pixels.isSigned ? "s" : "u");
+}
+
+/// Whether the slices of two pictures have the same directions, within about a third of a degree: headers round them.
+bool isAlong(const DicomFrame& one, const DicomFrame& other) {
+    constexpr double kSame = 0.005;
+    if (!one.axes || !other.axes) return one.axes.has_value() == other.axes.has_value();
+    return glm::distance((*one.axes)[0], (*other.axes)[0]) <= kSame &&
+           glm::distance((*one.axes)[1], (*other.axes)[1]) <= kSame;
 }
 
 struct Series {
@@ -78,10 +84,15 @@ std::string nameOf(const DicomFrame& frame) {
 
 /// By their numbers; names that several have get numbers behind.
 std::vector<Series> seriesOf(const std::vector<DicomFrame>& frames) {
-    std::map<std::string, Series> byKey;
-    for (const DicomFrame& frame : frames) byKey[keyOf(frame)].frames.push_back(frame);
+    std::map<std::string, std::vector<Series>> byKey;
+    for (const DicomFrame& frame : frames) {
+        std::vector<Series>& alike = byKey[keyOf(frame)];
+        auto series = std::ranges::find_if(alike, [&](const Series& s) { return isAlong(s.frames.front(), frame); });
+        if (series == alike.end()) series = alike.insert(alike.end(), Series());
+        series->frames.push_back(frame);
+    }
     std::vector<Series> all;
-    for (auto& [key, series] : byKey) all.push_back(std::move(series));
+    for (auto& [key, alike] : byKey) std::ranges::move(alike, std::back_inserter(all));
     std::ranges::stable_sort(all, {}, [](const Series& series) { return series.frames.front().seriesNumber; });
     std::set<std::string> taken;
     for (Series& series : all) {
@@ -106,10 +117,11 @@ bool isMeant(const Series& series, const std::string& wanted) {
            wanted == first.seriesUid;
 }
 
-/// The range of the numbers that may be stored.
-ValueRange storedRange(const DicomPixels& pixels) {
-    const double half = std::ldexp(1.0, pixels.bitsStored - 1);
-    return pixels.isSigned ? ValueRange{-half, half - 1} : ValueRange{0, 2 * half - 1};
+/// The range of the values that a picture without a slope may have.
+ValueRange valueRange(const DicomFrame& frame) {
+    if (frame.table) return {static_cast<double>(frame.table->least), static_cast<double>(frame.table->greatest)};
+    const ValueRange stored = storedRange(frame.pixels);
+    return {stored.lo + frame.intercept, stored.hi + frame.intercept};
 }
 
 template <class T>
@@ -118,13 +130,18 @@ bool holds(const ValueRange& range) {
            range.hi <= static_cast<double>(std::numeric_limits<T>::max());
 }
 
+double valueIn(const DicomTable& table, double stored) {
+    const double last = static_cast<double>(table.values.size() - 1);
+    return table.values[static_cast<std::size_t>(std::clamp(stored - table.first, 0.0, last))];
+}
+
 /// The values of pictures, file by file as they are asked for.
 class PictureReader {
 public:
     PictureReader(const std::vector<DicomFrame>& frames, const BeforeFile& before)
         : m_frames(frames), m_before(before) {}
 
-    /// value = slope · stored + intercept of picture n.
+    /// value = slope · stored + intercept of picture n, or that of its table; NaN for padding.
     void read(std::size_t n, std::span<double> values) {
         const DicomFrame& frame = m_frames[n];
         if (m_file != frame.file) {
@@ -135,7 +152,9 @@ public:
         }
         const std::size_t bytesPer = static_cast<std::size_t>(frame.pixels.bitsAllocated / 8);
         const char* from = m_bytes.data() + static_cast<std::size_t>(frame.frame) * values.size() * bytesPer;
-        const int unused = 64 - frame.pixels.bitsStored;
+        const int unused = 64 - frame.pixels.bitsStored, above = unused - frame.pixels.lowestBit;
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        const auto [firstPadding, lastPadding] = frame.padding.value_or(std::array{kNone, kNone});
         for (double& value : values) {
             std::uint64_t bits = 0;
             if constexpr (std::endian::native == std::endian::little)
@@ -143,10 +162,13 @@ public:
             else
                 std::memcpy(reinterpret_cast<char*>(&bits) + (8 - bytesPer), from, bytesPer);
             from += bytesPer;
-            const std::uint64_t high = bits << unused; // some writers put overlays into bits that are not used
+            const std::uint64_t high = bits << above; // some writers put overlays into bits that are not used
             const double stored = frame.pixels.isSigned ? static_cast<double>(static_cast<std::int64_t>(high) >> unused)
                                                         : static_cast<double>(high >> unused);
-            value = frame.slope * stored + frame.intercept;
+            if (stored >= firstPadding && stored <= lastPadding)
+                value = kNone;
+            else
+                value = frame.table ? valueIn(*frame.table, stored) : frame.slope * stored + frame.intercept;
         }
     }
 
@@ -178,13 +200,17 @@ DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, con
             frames = framesIn(there, before, faults);
         } else {
             frames = readDicomHeader(path);
+            if (frames.empty() && contentOf(path) != kDicomContent) // the library takes much for DICOM
+                throw notOfFormat("a DICOM file", path, fileHead(path, 1024));
             if (frames.empty()) throw FileError("this DICOM file has no pictures", path, "name another file");
             if (frames.size() == 1) { // a slice: its series lies around it
                 ownUid = frames.front().seriesUid;
-                const std::string own = keyOf(frames.front());
+                const DicomFrame own = frames.front();
                 std::vector<FileError> others; // of files that nobody has named
                 std::vector<DicomFrame> around = framesIn(pellucid::filesIn(folderToRead(path)), before, others);
-                std::erase_if(around, [&](const DicomFrame& frame) { return keyOf(frame) != own; });
+                std::erase_if(around, [&](const DicomFrame& frame) {
+                    return keyOf(frame) != keyOf(own) || !isAlong(frame, own);
+                });
                 if (around.size() > 1 && !ownUid.empty()) frames = std::move(around);
             }
         }
@@ -209,7 +235,7 @@ DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, con
     }
     m_name = chosen->name;
     m_frames = std::move(chosen->frames);
-    m_type = keptType();
+    chooseType();
     if (all.size() > 1 && wanted.empty())
         m_notices.push_back("series " + inQuotes(m_name) + " of " + std::to_string(all.size()) + " is shown");
     if (!faults.empty())
@@ -220,27 +246,37 @@ DicomSeries::DicomSeries(const std::string& path, const std::string& wanted, con
         m_notices.emplace_back("small values are meant to be bright (MONOCHROME1): values are kept as they are");
     if (m_frames.front().photometric == "PALETTE COLOR")
         m_notices.emplace_back("colours of a palette are shown as their numbers");
+    const auto isScaled = [](const DicomFrame& frame) { return frame.slope != 1 || frame.intercept != 0; };
+    if (m_frames.front().table && isScaled(m_frames.front()))
+        m_notices.emplace_back("the files have both a table of values (Modality LUT) and a rescale: the table is used");
     m_stack = stackOf(m_frames, path);
 }
 
-ValueType DicomSeries::keptType() const {
+void DicomSeries::chooseType() {
+    const DicomFrame& first = m_frames.front();
     ValueRange range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
-    bool isWhole = true;
+    bool isWhole = true, isPadded = false,
+         isSame = !first.table; // isSame: padding is one value, which nothing else has
     for (const DicomFrame& frame : m_frames) {
-        isWhole = isWhole && frame.slope == 1 && frame.intercept == std::floor(frame.intercept);
-        const ValueRange stored = storedRange(frame.pixels);
-        range.lo = std::min(range.lo, stored.lo + frame.intercept);
-        range.hi = std::max(range.hi, stored.hi + frame.intercept);
+        isWhole = isWhole && (frame.table || (frame.slope == 1 && frame.intercept == std::floor(frame.intercept)));
+        isPadded = isPadded || frame.padding;
+        isSame = isSame && !frame.table && frame.padding == first.padding && frame.intercept == first.intercept;
+        const ValueRange values = valueRange(frame);
+        range.lo = std::min(range.lo, values.lo);
+        range.hi = std::max(range.hi, values.hi);
     }
-    if (!isWhole) // floats hold the numbers of 24 bits
-        return m_frames.front().pixels.bitsStored <= 24 ? ValueType::F32 : ValueType::F64;
-    if (holds<std::uint8_t>(range)) return ValueType::U8;
-    if (holds<std::int8_t>(range)) return ValueType::I8;
-    if (holds<std::uint16_t>(range)) return ValueType::U16;
-    if (holds<std::int16_t>(range)) return ValueType::I16;
-    if (holds<std::uint32_t>(range)) return ValueType::U32;
-    if (holds<std::int32_t>(range)) return ValueType::I32;
-    return ValueType::F64;
+    if (!isWhole) { // floats hold the numbers of 24 bits
+        m_type = first.pixels.bitsStored <= 24 ? ValueType::F32 : ValueType::F64;
+        return;
+    }
+    if (isPadded) m_missing = isSame ? (*first.padding)[0] + first.intercept : range.lo -= 1;
+    m_type = ValueType::F64;
+    if (holds<std::int32_t>(range)) m_type = ValueType::I32;
+    if (holds<std::uint32_t>(range)) m_type = ValueType::U32;
+    if (holds<std::int16_t>(range)) m_type = ValueType::I16;
+    if (holds<std::uint16_t>(range)) m_type = ValueType::U16;
+    if (holds<std::int8_t>(range)) m_type = ValueType::I8;
+    if (holds<std::uint8_t>(range)) m_type = ValueType::U8;
 }
 
 ReaderLayout DicomSeries::layout(int step) const {
@@ -265,14 +301,7 @@ ReaderLayout DicomSeries::layout(int step) const {
         answer.layersAtOnce = std::min(32, g.dims.z);
     for (const DicomFrame& frame : m_frames)
         answer.layersAtOnce = std::max(answer.layersAtOnce, std::min(frame.framesInFile, g.dims.z));
-    const DicomFrame& first = m_frames.front();
-    const bool isSame = std::ranges::all_of(m_frames, [&](const DicomFrame& frame) {
-        return frame.padding == first.padding && frame.slope == first.slope && frame.intercept == first.intercept;
-    });
-    if (first.padding && isSame && samples == 1) {
-        const double value = first.slope * *first.padding + first.intercept;
-        answer.missing = layout.type == ValueType::F32 ? static_cast<double>(static_cast<float>(value)) : value;
-    }
+    answer.missing = m_missing;
     return answer;
 }
 
@@ -332,6 +361,7 @@ void DicomSeries::read(int step, const ReaderBox& box, std::span<std::byte> voxe
                 double value = from[i];
                 if (layer.toAfter > 0) value += layer.toAfter * (other[i] - from[i]);
                 if constexpr (std::is_integral_v<T>) value = std::round(value);
+                if (m_missing && std::isnan(value)) value = *m_missing;
                 slice[i] = static_cast<T>(value);
             }
             voxels = copyFromSlice(std::as_bytes(std::span(slice)), size, perVoxel * sizeof(T), region, voxels);

@@ -1,6 +1,7 @@
 // DICOM: files, folders and DICOMDIRs, by GDCM. Runs in pellucid-reader only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,13 +27,14 @@ public:
               const JobControl& job) const override;
 
 private:
-    /// The smallest type that holds all values, or floats.
-    ValueType keptType() const;
+    /// Sets m_type to the smallest type that holds all values, or floats, and m_missing.
+    void chooseType();
 
     std::string m_path, m_name;
     std::vector<std::string> m_names, m_details; ///< of all series
     std::vector<DicomFrame> m_frames;            ///< of this one
-    ValueType m_type = ValueType::U8;            ///< keptType()
+    ValueType m_type = ValueType::U8;
+    std::optional<double> m_missing; ///< stands for none among whole numbers; among floats NaN does
     DicomStack m_stack;
     std::vector<std::string> m_notices;
 };

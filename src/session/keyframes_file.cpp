@@ -52,7 +52,7 @@ std::string pathIn(const std::string& folder, const std::string& name) {
 TransferFunction namedTf(const std::string& name, const std::string& folder, const Scene& scene) {
     const auto begins = [&](const char* with) { return name.starts_with(with); };
     const bool isFile = !begins("preset:") && !begins("tents:") && !begins("ramp:");
-    return forVolume(readTfNamed(isFile ? pathIn(folder, name) : name), scene.data->geometry());
+    return forVolume(readTfNamed(isFile ? pathIn(folder, name) : name), *scene.data);
 }
 
 void takeState(KeyState& state, const JsonValue& j, const std::string& folder, const Scene& scene) {

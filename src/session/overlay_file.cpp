@@ -67,7 +67,8 @@ SceneOverlay readOverlay(const OverlayView& view, const Geometry& first, const J
     overlay.notices = volume->notices;
     overlay.byCentres = place.byCentres;
     if (place.byCentres)
-        overlay.notices.emplace_back(volume->title + " does not say where it lies: it is centred on the volume");
+        overlay.notices.emplace_back("the overlay " + volume->title +
+                                     " does not say where it lies: it is centred on the volume");
     overlay.geometry = place.geometry;
     overlay.volume = std::move(volume);
     dressOverlay(overlay, view);

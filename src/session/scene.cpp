@@ -331,7 +331,7 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
         throw UsageError("there is no frame " + std::to_string(*inputs.frame), scene.series->listing().title,
                          "give 0 to " + std::to_string(scene.series->size() - 1));
     if (read) { // how long a path its opacities are of here is known now
-        TransferFunction placed = forVolume(*read, scene.data->geometry());
+        TransferFunction placed = forVolume(*read, *scene.data);
         if (!(placed == *tf)) {
             tf = std::move(placed);
             Session changed = scene.session; // apart from the basis, which tells what is new
@@ -339,7 +339,8 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
             scene = resolve(std::move(changed), scene, inputs.then, job);
         }
     }
-    if (tf && windowIsOpen) { // what kind of samples there are is known now
+    const bool followsData = read && read->spansData && !inputs.range;
+    if (tf && (windowIsOpen || followsData)) { // what kind of samples there are is known now
         placeAsPublished(scene.session, *scene.data, *tf);
         if (tf->range) {
             scene.session.variables.edit([&](std::vector<Variable>& all) { all.front().window = tf->range; });

@@ -15,7 +15,8 @@ VolatilityKind volatilityKind(const Session& session) {
 std::vector<std::string> openingNoticesIn(const Scene& scene, const ReadTf& read) {
     // The published profile takes Voreen's files as the thesis did.
     if (read.opensAsItIs && scene.session.measure->profile == Profile::Published) return {};
-    return openingNotices(read, scene.data->geometry());
+    return openingNotices(read, scene.data->geometry(),
+                          read.spansData ? scene.data->dataRange() : scene.volume->range());
 }
 
 bool sameOrigin(const Variable& a, const Variable& b) {

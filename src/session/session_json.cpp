@@ -248,8 +248,8 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
         const std::string crc = j["crc32"].text();
         const auto now = fingerprintOf(s);
         if (now && (now->bytes != bytes || now->crcText() != crc))
-            notices.push_back(fs::path(s.path).filename().string() +
-                              " is not the file that the session was saved with: its content has changed");
+            notices.push_back("the file " + fs::path(s.path).filename().string() +
+                              " is not the one that the session was saved with: its content has changed");
     }
     return s;
 }

@@ -1,4 +1,4 @@
-// One HTML file that shows a scene in any browser, without a network: its voxels, its look, and a ray caster.
+// One HTML file that shows a scene in a browser, without a network: its voxels, its look, and a ray caster.
 #pragma once
 
 #include <memory>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <span>
 
 #include "base/text.h"
 
@@ -245,6 +247,28 @@ std::optional<NumberedNames> numberedNames(const std::vector<std::string>& paths
         names.numbers.push_back(number);
     }
     return names;
+}
+
+std::optional<NumberGaps> gapsIn(const std::vector<std::int64_t>& numbers) {
+    if (numbers.size() < 3) return {};
+    std::map<std::int64_t, int> steps;
+    for (std::size_t i = 1; i < numbers.size(); ++i) ++steps[numbers[i] - numbers[i - 1]];
+    const auto usual =
+        std::max_element(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    NumberGaps gaps{usual->first, 0};
+    if (gaps.step < 1 || steps.size() == 1) return {};
+    for (const auto& [difference, count] : steps) {
+        if (difference % gaps.step != 0) return {}; // no even course
+        gaps.missing += static_cast<std::uint64_t>(difference / gaps.step - 1) * static_cast<std::uint64_t>(count);
+    }
+    return gaps;
+}
+
+std::string someNames(const std::vector<std::string>& paths) {
+    constexpr std::size_t kShown = 4;
+    const std::string text = joined(std::span(paths).first(std::min(paths.size(), kShown)), ", ",
+                                    [](const std::string& path) { return fs::path(path).filename().string(); });
+    return paths.size() <= kShown ? text : text + " and " + std::to_string(paths.size() - kShown) + " more";
 }
 
 std::string volumeSuffix(const std::string& path) {

@@ -46,6 +46,16 @@ std::optional<NumberedNames> numberedNames(const std::vector<std::string>& paths
 /// Of sorted paths that `name` has made.
 std::optional<NumberedNames> numberedBy(const NumberedName& name, const std::vector<std::string>& paths);
 
+/// Numbers that are missing between those that rise in steps of `step`.
+struct NumberGaps {
+    std::int64_t step = 1;
+    std::uint64_t missing = 0;
+};
+/// Of ascending numbers; empty where none is missing, or they rise unevenly.
+std::optional<NumberGaps> gapsIn(const std::vector<std::int64_t>& numbers);
+/// The names of files, without their folders: "a, b, c, d and 4 more".
+std::string someNames(const std::vector<std::string>& paths);
+
 /// ".nii.gz", ".raw": in lower case, with the dot; empty where there is none.
 std::string volumeSuffix(const std::string& path);
 

@@ -60,6 +60,11 @@ const VolumeFormat* formatBeside(const std::string& path) {
     return nullptr;
 }
 
+/// Whether a file is a picture that no format takes: one slice, which may be one of a folder.
+bool isLonePicture(const std::string& path) {
+    return hasOneOf(path, {".png", ".jpg", ".jpeg", ".bmp"}) && contentOf(path).ends_with(" image");
+}
+
 /// By what is in the file; where that does not tell, by the suffix. Null where neither does.
 const VolumeFormat* findFormat(const std::string& path) {
     if (isFolder(path)) {
@@ -74,6 +79,9 @@ const VolumeFormat* findFormat(const std::string& path) {
 /// Throws FileError where there is none for this suffix.
 const VolumeFormat& formatOf(const std::string& path) {
     if (const VolumeFormat* format = findFormat(path)) return *format;
+    if (isLonePicture(path))
+        throw FileError("this is a picture: one slice, not a volume", path,
+                        "put all slices into a folder and open that, or save this one as TIFF");
     const bool named =
         lowerCase(path).ends_with(".raw") || std::ranges::any_of(formats(), [&](const VolumeFormat& format) {
             return hasOneOf(path, format.sharedSuffixes);
@@ -232,7 +240,7 @@ bool hasVolumeSuffix(const std::string& path) {
 
 bool mayBeHeaderless(const std::string& path) {
     std::error_code ec;
-    return std::filesystem::is_regular_file(path, ec) && findFormat(path) == nullptr;
+    return std::filesystem::is_regular_file(path, ec) && findFormat(path) == nullptr && !isLonePicture(path);
 }
 
 const std::vector<std::string>& volumeFilePatterns() {

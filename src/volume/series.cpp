@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <span>
 
 #include "base/round_numbers.h"
 #include "base/text.h"
@@ -24,13 +23,6 @@ namespace fs = std::filesystem;
 constexpr int kMostFrames = 100'000; ///< a few hundred bytes each
 
 std::string fileName(const std::string& path) { return fs::path(path).filename().string(); }
-
-/// "a, b, c and 4 more".
-std::string someOf(const std::vector<std::string>& names) {
-    constexpr std::size_t kShown = 4;
-    const std::string text = joined(std::span(names).first(std::min(names.size(), kShown)), ", ", fileName);
-    return names.size() <= kShown ? text : text + " and " + std::to_string(names.size() - kShown) + " more";
-}
 
 std::string filesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " file" : " files"); }
 
@@ -97,7 +89,7 @@ std::vector<std::string> ofOneSuffix(std::vector<std::string> paths, bool anySuf
         if (suffix != chosen->first) others.insert(others.end(), files.begin(), files.end());
     if (!others.empty() && chosen->first != ".pvd")
         notices.push_back(filesText(others.size()) + " of another suffix than *" + chosen->first +
-                          (others.size() == 1 ? " was" : " were") + " passed over: " + someOf(others));
+                          (others.size() == 1 ? " was" : " were") + " passed over: " + someNames(others));
     return chosen->second;
 }
 
@@ -112,19 +104,10 @@ struct FileList {
 /// Puts the names that are missing between numbered ones where they belong, unless there are too many.
 void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
     std::optional<NumberedNames> numbered = pattern ? numberedBy(*pattern, list.paths) : numberedNames(list.paths);
-    if (!numbered || numbered->numbers.size() < 3) return;
+    const std::optional<NumberGaps> gaps = numbered ? gapsIn(numbered->numbers) : std::nullopt;
+    if (!gaps) return;
     const std::vector<std::int64_t>& numbers = numbered->numbers;
-    std::map<std::int64_t, int> steps;
-    for (std::size_t i = 1; i < numbers.size(); ++i) ++steps[numbers[i] - numbers[i - 1]];
-    const auto usual =
-        std::max_element(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    const std::int64_t step = usual->first;
-    if (step < 1 || steps.size() == 1) return;
-    std::uint64_t missing = 0;
-    for (const auto& [difference, count] : steps) {
-        if (difference % step != 0) return; // no even course
-        missing += static_cast<std::uint64_t>(difference / step - 1) * static_cast<std::uint64_t>(count);
-    }
+    const auto [step, missing] = *gaps;
     if (missing > numbers.size()) {
         list.notices.push_back(std::to_string(missing) +
                                (missing == 1 ? " frame number is missing" : " frame numbers are missing"));
@@ -144,7 +127,7 @@ void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
     }
     list.paths = std::move(paths);
     list.notices.push_back(filesText(gone.size()) + (gone.size() == 1 ? " is" : " are") +
-                           " missing in the series: " + someOf(gone));
+                           " missing in the series: " + someNames(gone));
 }
 
 FileList listFiles(const VolumeSource& source) {

@@ -75,7 +75,39 @@ TEST_CASE("a transfer function is written as Python for other programs' consoles
         const json told = w.jsonAndNotes(Words{"convert", "tents:2:0.5", "--to", name, "--out", "a.py"} + kForVolume);
         CHECK(told["to"] == name);
         CHECK_THAT(w.read("a.py"), Catch::Contains("unit_distance = 1") && Catch::Contains("points = ["));
+        CHECK(says(told["losses"], "2 features"));
+        CHECK_FALSE(says(told["losses"], "is known"));
+        const json alone = w.jsonAndNotes({"convert", "tents:3", "--to", name, "--out", "b.py"});
+        CHECK(says(alone["losses"], "no data range is known"));
+        CHECK(says(alone["losses"], "no volume is known"));
     }
+}
+
+TEST_CASE("a program that lays a curve over the data gets it for all values of the data", "[cli][convert]") {
+    const Workshop w;
+    // A window of half the data, and one measure of it by the file that was written.
+    w.jsonAndNotes(Words{"convert", "tents:2:0.5", "--to", "pellucid", "--out", "a.tf.json", "--range", "20,150"} +
+                   kForVolume);
+    const Words measure = Words{"measure"} + kVolume + Words{"--range", "20,150"};
+    const json before = w.jsonAndNotes(measure + Words{"--tf", "a.tf.json"});
+    REQUIRE(before["features"].size() == 2);
+    for (const char* name : {"itksnap", "imagevis3d"}) {
+        INFO(name);
+        const json told = w.jsonAndNotes(Words{"convert", "a.tf.json", "--to", name, "--out", name} + kForVolume);
+        CHECK(says(told["losses"], "all values of the data, "));
+        CHECK_FALSE(says(told["losses"], "assumed"));
+        const json after = w.jsonAndNotes(measure + Words{"--tf", name});
+        REQUIRE(after["features"].size() == 2);
+        for (std::size_t f = 0; f < 2; ++f)
+            CHECK(after["features"][f]["visibility"].get<double>() ==
+                  Approx(before["features"][f]["visibility"].get<double>()).margin(0.01));
+    }
+    CHECK(says(w.jsonAndNotes({"convert", "a.tf.json", "--to", "itksnap", "--out", "b"})["losses"],
+               "assumed to be 20 to 150; name a volume"));
+    // What a file without a range is put on is told: positions of the file, and values.
+    w.write("c.json", R"([{"Name": "c", "RGBPoints": [-1, 0, 0, 0, 1, 1, 1, 1]}])");
+    CHECK_THAT(w.run(measure + Words{"--tf", "c.json"}).err,
+               Catch::Contains("its positions -1 to 1 are put on the values 20 to 150"));
 }
 
 TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli][convert]") {
@@ -101,6 +133,9 @@ TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli
             "one frame and all frames");
     CHECK_THAT(w.run({"convert", "tents:2", "--to", "slicer", "--out", "d.json"}).err,
                Catch::Contains("end in .vp.json"));
+    const Outcome table = w.run({"convert", "tents:2", "--to", "csv", "--out", "d.txt"});
+    CHECK(table.out == "wrote d.txt: a table (CSV)\n");
+    CHECK_THAT(table.err, Catch::Contains("its name does not end in .tf.csv, as that of a table (CSV) should"));
     CHECK_THAT(w.run({"convert", "tents:2", "--to", "slicer", "--out", "d.vp.json"}).err,
                !Catch::Contains("end in .vp.json"));
     w.write("c.json", R"([{"Name": "c", "IndexedColors": [1, 0, 0], "Annotations": [0, "bone"]}])");

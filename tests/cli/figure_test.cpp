@@ -38,6 +38,31 @@ TEST_CASE("figure writes PDF and SVG with the shares that measure tells", "[cli]
     CHECK(w.read("a.pdf") == w.read("b.pdf"));
 }
 
+TEST_CASE("figure has all parts where all are asked for, and says which font stands in", "[cli][figure]") {
+    const Workshop w;
+    const json all = w.json(kSmall + Words{"--parts", "all", "--out", "a.svg"});
+    CHECK_FALSE(all["caption"].get<std::string>().empty());
+    CHECK(all.contains("scale"));
+    for (const char* part : {"heading", "picture", "annotations", "feature-1", "shares-axis", "colors", "caption"}) {
+        INFO(part);
+        CHECK(w.read("a.svg").find("<g id=\"" + std::string(part) + "\"") != std::string::npos);
+    }
+    const auto noteOf = [&](const std::string& font) {
+        const Outcome outcome = w.run(kSmall + Words{"--parts", "legend", "--font", font, "--out", "b.svg"});
+        INFO(outcome.err);
+        CHECK(outcome.status == 0);
+        return outcome.err;
+    };
+    CHECK(noteOf("NoSuchFontXYZ").find("the font NoSuchFontXYZ is not installed: the letters are in ") !=
+          std::string::npos);
+    CHECK(noteOf("NoSuchFontXYZ, sans").empty()); // any font is a sans
+    const json noted = w.jsonAndNotes(kSmall + Words{"--parts", "legend", "--font", "NoSuchFontXYZ", "--out", "b.svg"});
+    REQUIRE(noted["notices"].size() == 1);
+    // What stands in is there, so that it can be asked for without a note.
+    const std::string notice = noted["notices"][0], before = "the letters are in ";
+    CHECK(noteOf(notice.substr(notice.find(before) + before.size())).empty());
+}
+
 TEST_CASE("figures that cannot be made are refused in words", "[cli][figure]") {
     const Workshop w;
     const auto refused = [&](const Words& options, const std::string& word) {

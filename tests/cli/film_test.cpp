@@ -54,5 +54,8 @@ TEST_CASE("films that cannot be made are refused in words", "[cli][film]") {
     refused({"--out", "f", "--kind", "views", "--views", "front; left", "--degrees", "90"}, "--degrees");
     refused({"--out", "f", "--seconds", "0"}, "--seconds");
     refused({"--out", "f", "--seconds", "3600", "--fps", "100"}, "100000 pictures");
+    // They would become folders of these names.
+    for (const char* suffix : {"avi", "mov", "MKV", "wmv", "m4v", "ogv", "flv", "mpg", "mpeg"})
+        refused({"--out", std::string("f.") + suffix}, ".mp4, .webm, .gif or .apng");
     CHECK(w.list().empty());
 }

@@ -11,6 +11,7 @@
 #include "command_line.h"
 #include "image_io/image_file.h"
 #include "image_io/png_text.h"
+#include "support/caption_numbers.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -72,6 +73,66 @@ TEST_CASE("the caption of a picture has figures where they are asked for, those 
     CHECK(w.run(kKnee + Words{"--caption", "--no-metadata", "--out", "b.png"}).status == 2);
     w.json(kKnee + Words{"--slice", "z:0.5", "--out", "b.png"});
     CHECK(textsOf(w, "b.png").at("Description").find("slice ") != std::string::npos);
+}
+
+TEST_CASE("describe takes the look of a picture as render does", "[cli][picture-text]") {
+    const Workshop w;
+    const Words scene{"--tf", "tents:2", "--view", "0,0"};
+    const auto describe = [&](const Words& look) {
+        const Words all = Words{"describe", "sample:knee", "--sample-size", "24", "--engine", "cpu"} + scene + look;
+        return w.json(all)["caption"].get<std::string>();
+    };
+    const std::string plain = describe({});
+    CHECK(plain.find(", lit") == std::string::npos);
+    const std::pair<Words, std::string> looks[] = {
+        {{"--shading"}, ", lit: knee. "},
+        {{"--light-preset", "matte", "--background", "1,1,1"}, ", lit: knee. "},
+        {{"--mode", "mip"}, ", the largest value along each ray: knee."}}; // and no shares, which it does not show
+    for (const auto& [look, words] : looks) {
+        INFO(look.front());
+        const std::string said = describe(look);
+        CHECK(said.find(words) != std::string::npos);
+        w.json(kKnee + scene + look + Words{"--caption", "--out", "a.png"});
+        CHECK(textsOf(w, "a.png").at("Description") == said);
+    }
+    CHECK(describe({"--mode", "mip"}).find('%') == std::string::npos);
+    // Light changes no share: what comes after the first sentence is the same.
+    const std::string lit = describe({"--shading"});
+    CHECK(lit.substr(lit.find("knee. ")) == plain.substr(plain.find("knee. ")));
+}
+
+TEST_CASE("the numbers that describe says are those that measure tells", "[cli][picture-text]") {
+    const Workshop w;
+    const Words looks[] = {{"--tf", "tents:2", "--view", "30,20"},
+                           {"--tf", "tents:3:0.1", "--view", "-80,40,1.4", "--orthographic"},
+                           {"--tf", "tents:4:0.9", "--view", "200,-35", "--shading"},
+                           {"--tf", "ramp:5", "--view", "10,80", "--clip", "x:0:0.6"}};
+    for (const char* sample : {"sample:shells", "sample:smoke", "sample:disks"})
+        for (const Words& look : looks) {
+            const Words scene = Words{sample, "--sample-size", "16", "--engine", "cpu"} + look;
+            const json described = w.json(Words{"describe"} + scene);
+            Words plain = scene;
+            std::erase(plain, "--shading"); // which changes no figure, and measure takes it with a picture alone
+            const json measured = w.json(Words{"measure", "--occlusion"} + plain);
+            const std::string text = described["caption"];
+            const SaidNumbers said = numbersIn(text);
+            CAPTURE(sample, text);
+            REQUIRE(said.numbers == std::ranges::count(text, '%'));
+            std::map<std::string, std::size_t> indices;
+            for (std::size_t f = 0; f < measured["features"].size(); ++f) {
+                const json& feature = measured["features"][f];
+                indices[feature["name"]] = f;
+                if (said.shares.count(feature["name"]) == 0) {
+                    CHECK((feature["empty"] == true || feature["visibility"] == 0.0));
+                    continue;
+                }
+                checkSaid(said.shares.at(feature["name"]).vws, feature["vws"]);
+                checkSaid(said.shares.at(feature["name"]).visibility, feature["visibility"]);
+            }
+            if (said.coverage) checkSaid(*said.coverage, measured["coverage"]);
+            for (const SaidNumbers::Hiding& h : said.hides)
+                checkSaid(h.part, measured["occlusion"][indices.at(h.hidden)][indices.at(h.hider)]);
+        }
 }
 
 TEST_CASE("a picture is a session, wherever it and its data are moved together", "[cli][picture-text]") {

@@ -10,6 +10,7 @@
 #include <pugixml.hpp>
 
 #include "base/atomic_file.h"
+#include "base/text.h"
 #include "figure/figure_file.h"
 #include "figure/print.h"
 #include "figure/svg_figure.h"
@@ -98,7 +99,12 @@ TEST_CASE("parts are read by their names", "[figure]") {
         CHECK(figurePartsOf(part.name) == one);
         CHECK(figurePartsOf(textOf(one)) == one);
     }
+    FigureParts all;
+    for (const FigurePartInfo& part : kFigureParts) all.*part.shown = true;
+    CHECK(figurePartsOf("all") == all);
+    CHECK(figurePartsOf("picture, all") == all);
     CHECK_THROWS_AS(figurePartsOf("scale,moon"), UsageError);
+    CHECK_THROWS_AS(figurePartsOf("all,moon"), UsageError);
     CHECK(figurePartsOf("") == FigureParts{});
 }
 
@@ -203,6 +209,55 @@ TEST_CASE("every part lies on the page, below the one before", "[figure]") {
         CHECK(lowest <= figure.height + 0.5); // letters that reach below the line have their room
         CHECK(figure.height > 0.75 * width);
     }
+}
+
+TEST_CASE("lines around boxes lie within the page, clear of its edges", "[figure]") {
+    // A stroke that begins at the edge is cut where a viewer rounds the page to whole pixels: at 100 dots per inch, one
+    // is 0.254 mm wide.
+    for (const double points : {7.0, 14.0})
+        for (const char* parts : {"legend", "legend,shares,targets", "shares,colors"}) {
+            FigureTask task = taskOf(sampleScene(), parts);
+            task.settings.fontPt = points;
+            const Figure figure = layOut(contentOf(task));
+            int lines = 0;
+            for (const FigureGroup& group : figure.groups) {
+                if (group.clip) continue; // over the picture
+                INFO(parts << ", " << points << " pt: " << group.name);
+                const auto check = [&](const std::vector<Vec2>& corners, double width) {
+                    const PixelBox box = boxAround(corners);
+                    CHECK(box.left - width / 2 >= 0.254);
+                    CHECK(box.right + width / 2 <= figure.width - 0.254);
+                    CHECK(box.bottom + width / 2 <= figure.height);
+                };
+                for (const FigureLine& line : elementsOf<FigureLine>(group)) {
+                    check(line.points, line.width);
+                    ++lines;
+                }
+                for (const FigureArea& area : elementsOf<FigureArea>(group)) check(area.corners, 0);
+            }
+            CHECK(lines >= 3); // at least around the colour of each feature
+        }
+}
+
+TEST_CASE("a font that is not installed is named with the one that stands in", "[figure]") {
+    const std::string standIn = familyOf("NoSuchFontXYZ").front();
+    CHECK(fontNotice("NoSuchFontXYZ") == "the font NoSuchFontXYZ is not installed: the letters are in " + standIn);
+    CHECK(fontNotice("NoSuchFontXYZ, NoSuchEither") ==
+          "none of the fonts NoSuchFontXYZ, NoSuchEither is installed: the letters are in " + standIn);
+    CHECK(fontNotice(standIn).empty());
+    CHECK(fontNotice(lowerCase(standIn)).empty());
+    CHECK(fontNotice("NoSuchFontXYZ, " + standIn).empty()); // the first that is there counts
+    for (const char* any : {"Sans", "sans-serif", "Serif", "Monospace", ""}) CHECK(fontNotice(any).empty());
+    // Nor does a name from elsewhere control a terminal.
+    CHECK(fontNotice("No\x1b[31mSuch").find('\x1b') == std::string::npos);
+
+    const TempFolder folder;
+    FigureTask task = taskOf(sampleScene(), "picture,legend");
+    task.settings.font = "NoSuchFontXYZ";
+    task.path = folder.path("a.svg");
+    CHECK(makeFigure(task).notices == std::vector{fontNotice("NoSuchFontXYZ")});
+    task.settings.font = standIn;
+    CHECK(makeFigure(task).notices.empty());
 }
 
 TEST_CASE("an SVG figure is XML of the size that was asked for, and fetches nothing", "[figure]") {

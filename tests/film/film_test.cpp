@@ -143,6 +143,28 @@ TEST_CASE("a film is one file, whole or absent", "[film]") {
     CHECK(readText(task.path) == "000000.png\n000001.png\n000002.png\n000003.png\n000004.png\nfilm.mp4\n");
 }
 
+TEST_CASE("a name that ends as a film which is not written is no folder, either", "[film]") {
+    const TempFolder folder;
+    FilmTask task{filmScene()};
+    task.shots = shotsOf(planOf(FilmKind::Turntable, 1, 1), {}, task.scene);
+    task.width = task.height = 8;
+    for (const char* name :
+         {"a.avi", "a.mov", "a.mkv", "a.wmv", "a.m4v", "a.ogv", "a.flv", "a.mpg", "a.mpeg", "a.MOV"}) {
+        INFO(name);
+        task.path = folder.path(name);
+        CHECK_THROWS_AS(checkFilm(task), UsageError);
+        CHECK_THROWS_AS(makeFilm(task), UsageError);
+        CHECK_FALSE(std::filesystem::exists(task.path));
+    }
+    // Dots alone say nothing; and who means a folder can say so.
+    for (const char* name : {"turn.v2", "knee.2024-05-01", "a.avi/"}) {
+        INFO(name);
+        task.path = folder.path(name);
+        CHECK_NOTHROW(makeFilm(task));
+        CHECK(std::filesystem::exists(pictureFileOf(task.path, 0)));
+    }
+}
+
 TEST_CASE("keyframes are pictures from the first key to the last", "[film]") {
     const Scene scene = filmScene();
     const Geometry& g = scene.volume->geometry();

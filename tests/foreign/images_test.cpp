@@ -46,6 +46,23 @@ std::vector<TiffPage> pages(int count, const std::string& description = "", int 
     return all;
 }
 
+/// OME-XML of one image: `attributes` of its pixels, besides their type and size, and the elements in them.
+std::string omeImage(const std::string& attributes, const std::string& elements) {
+    return "<Image ID=\"Image:0\" Name=\"cells\"><Pixels ID=\"Pixels:0\" Type=\"uint16\" SizeX=\"3\" SizeY=\"2\" " +
+           attributes + ">" + elements + "</Pixels></Image>";
+}
+std::string ome(const std::string& images, const std::string& attributes = "") {
+    return "<?xml version=\"1.0\"?><!-- <Pixels SizeZ=\"9\"> is no tag here --><OME " + attributes + ">" + images +
+           "</OME>";
+}
+/// The page that each slice is, as pages() numbers them.
+std::vector<int> pagesOf(const Volume& volume) {
+    std::vector<int> all;
+    for (int z = 0; z < volume.dims().z; ++z)
+        all.push_back(static_cast<int>(volume.value(static_cast<std::size_t>(6 * z))) / 100);
+    return all;
+}
+
 } // namespace
 
 TEST_CASE("pages of a TIFF file are slices", "[images]") {
@@ -160,6 +177,273 @@ TEST_CASE("OME-XML says how pages follow each other and how far pixels are apart
         source.path = folder.write("b.ome.tif", tiffFile(pages(4, other)));
         CHECK(loadVolume(source).value(6) == 300);
     }
+}
+
+TEST_CASE("ImageJ's calibration of values is applied where it is a straight line", "[images]") {
+    const TempFolder folder;
+    const auto load = [&](const std::string& fields, int format = 1) {
+        std::vector<TiffPage> all = pages(2, "ImageJ=1.53t\nimages=2\nslices=2\n" + fields);
+        for (TiffPage& page : all) page.format = format;
+        return loadVolume(at(folder.write("calibrated.tif", tiffFile(all))));
+    };
+    // As ImageJ writes signed numbers of 16 bits: 32 768 larger.
+    const std::string line = "cf=0\nc0=-32768.0\nc1=1.0\nvunit=Gray Value\n";
+    const Volume lowered = load(line);
+    CHECK(lowered.value(0) == -32768);
+    CHECK(lowered.value(11) == 105 - 32768);
+    CHECK(lowered.notices.empty());
+    // It reads signed ones as that, too: these are what they are.
+    const Volume isSigned = load(line, 2);
+    CHECK(isSigned.sampleType() == SampleType::I16);
+    CHECK(isSigned.value(11) == 105);
+    CHECK(load("cf=0\nc0=10\nc1=0.5\nvunit=OD\n").value(11) == 62.5);
+    const Volume clipped = load("cf=0\nc0=-100\nc1=1\nvunit=OD\nzeroclip=true\n");
+    CHECK(clipped.value(0) == -100);
+    CHECK(hasNotice(clipped, "zeroclip"));
+    for (const char* other : {"cf=3\nc0=1\nc1=2\nc2=3\nvunit=OD\n", "cf=21\nvunit=OD\n", "cf=0\nc0=1\nvunit=OD\n",
+                              "cf=0\nc0=1\nc1=0\nvunit=OD\n"}) {
+        const Volume stored = load(other);
+        CHECK(stored.sampleType() == SampleType::U16);
+        CHECK(stored.value(11) == 105);
+        CHECK(hasNotice(stored, "the stored values are shown"));
+    }
+    CHECK(load("cf=20\nvunit=Gray Value\n").notices.empty()); // none
+}
+
+TEST_CASE("distances and times of ImageJ are converted to one unit", "[images]") {
+    const TempFolder folder;
+    const auto load = [&](const std::string& fields) { // 4 pixels in a unit
+        return loadVolume(
+            at(folder.write("units.tif", tiffFile(pages(2, "ImageJ=1.53t\nimages=2\nslices=2\n" + fields, 4)))));
+    };
+    const Volume down = load("unit=um\nspacing=-3.0\n");
+    CHECK(down.geometry().spacing == Vec3(0.25, 0.25, 3));
+    CHECK(down.notices.empty());
+    CHECK(load("unit=\\u00B5m\nyunit=mm\nzunit=nm\nspacing=500\n").geometry().spacing == Vec3(0.25, 250, 0.5));
+    const Volume strange = load("unit=micron\nzunit=furlong\nspacing=2\n");
+    CHECK(strange.geometry().spacing == Vec3(0.25, 0.25, 2));
+    CHECK(hasNotice(strange, "'furlong'"));
+    const Volume without = load("unit=um\n"); // ImageJ writes no spacing of 1
+    CHECK(without.geometry().spacing == Vec3(0.25, 0.25, 1));
+    CHECK(hasNotice(without, "how far slices are apart"));
+    const std::string steps = "ImageJ=1.53t\nimages=2\nframes=2\nfinterval=250\ntunit=";
+    CHECK(contentsOf(at(folder.write("ms.tif", tiffFile(pages(2, steps + "ms\n"))))).times ==
+          std::vector<double>{0, 0.25});
+    const std::string moons = folder.write("moons.tif", tiffFile(pages(2, steps + "moons\n")));
+    CHECK(contentsOf(at(moons)).times.empty());
+    CHECK(hasNotice(loadVolume(at(moons)), "'moons'"));
+}
+
+TEST_CASE("pages of OME-TIFF are the pictures that TiffData says", "[images]") {
+    const TempFolder folder;
+    const auto load = [&](int count, const std::string& text, int component = 0, int step = 0) {
+        VolumeSource source = at(folder.write("a.ome.tif", tiffFile(pages(count, text))));
+        source.component = component;
+        source.step = step;
+        return loadVolume(source);
+    };
+    const auto data = [](int page, int z, int c, int t, const std::string& rest = "/>") {
+        return "<TiffData IFD=\"" + std::to_string(page) + "\" FirstZ=\"" + std::to_string(z) + "\" FirstC=\"" +
+               std::to_string(c) + "\" FirstT='" + std::to_string(t) + "'" + rest;
+    };
+    const std::string stack = "DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\"";
+    const std::string places = "DimensionOrder=\"XYZCT\" SizeZ=\"2\" SizeC=\"2\" SizeT=\"2\"";
+    SECTION("in any order") {
+        const Volume turned = load(3, ome(omeImage(stack, data(2, 0, 0, 0) + data(1, 1, 0, 0) + data(0, 2, 0, 0))));
+        CHECK(pagesOf(turned) == std::vector{2, 1, 0});
+        CHECK(turned.notices.empty());
+        // Steps stand in the file from the last to the first, each with its slices, then its channels.
+        const std::string text =
+            ome(omeImage(places, data(0, 0, 0, 1, " PlaneCount=\"4\"/>") + data(4, 0, 0, 0, " PlaneCount=\"4\"/>")));
+        CHECK(pagesOf(load(8, text, 1, 0)) == std::vector{6, 7});
+        CHECK(pagesOf(load(8, text, 0, 1)) == std::vector{0, 1});
+        const std::string names = ome("<OME:Image><OME:Pixels SizeZ=\"2\"><OME:TiffData IFD=\"1\"/><OME:TiffData "
+                                      "IFD=\"0\" FirstZ=\"1\"/></OME:Pixels></OME:Image>");
+        CHECK(pagesOf(load(2, names)) == std::vector{1, 0});
+    }
+    SECTION("not more and not twice") {
+        const Volume fewer = load(2, ome(omeImage(stack, "<TiffData IFD=\"0\" PlaneCount=\"3\"/>")));
+        CHECK(pagesOf(fewer) == std::vector{0, 1});
+        CHECK(hasNotice(fewer, "says that it has 3 pictures, but it has 2"));
+        const Volume more = load(5, ome(omeImage(stack, "<TiffData IFD=\"1\" PlaneCount=\"3\"/>")));
+        CHECK(pagesOf(more) == std::vector{1, 2, 3});
+        CHECK(hasNotice(more, "2 pages that OME-XML does not give to this image"));
+        const Volume twice = load(4, ome(omeImage(stack, "<TiffData IFD=\"1\" PlaneCount=\"3\"/>" + data(0, 0, 0, 0))));
+        CHECK(pagesOf(twice) == std::vector{1, 2, 3});
+        CHECK(hasNotice(twice, "several pages for the same picture"));
+        CHECK_THROWS_WITH(load(2, ome(omeImage(stack, data(7, 0, 0, 0)))),
+                          Contains("names pages that it does not have"));
+    }
+    SECTION("of the first image") {
+        const std::string first = omeImage(stack, "<TiffData IFD=\"0\" PlaneCount=\"3\"/>");
+        const Volume one = load(6, ome(first + omeImage(stack, "<TiffData IFD=\"3\" PlaneCount=\"3\"/>")));
+        CHECK(pagesOf(one) == std::vector{0, 1, 2});
+        CHECK(hasNotice(one, "image 1 of 2, 'cells', is shown"));
+        const Volume last = load(6, ome(omeImage(stack, "<TiffData IFD=\"3\" PlaneCount=\"3\"/>") + first));
+        CHECK(pagesOf(last) == std::vector{3, 4, 5});
+        CHECK(pagesOf(load(6, ome(omeImage(stack, "") + omeImage(stack, "")))) == std::vector{0, 1, 2});
+    }
+    SECTION("where others are in other files") {
+        const auto in = [](const std::string& file, const std::string& uuid) {
+            return "><UUID FileName=\"" + file + "\">" + uuid + "</UUID></TiffData>";
+        };
+        // A file for each slice.
+        std::string slices;
+        for (int z = 0; z < 3; ++z) slices += data(0, z, 0, 0, in("abc"[z] + std::string(".ome.tif"), ""));
+        const Volume slice = load(1, ome(omeImage(stack, slices)));
+        CHECK(slice.dims() == Int3(3, 2, 1));
+        CHECK(hasNotice(slice, "2 of 3 pictures are in other files and are not shown: b.ome.tif, c.ome.tif"));
+        // A file for each step, of which the second is this one: its slices and channels are what they are.
+        const std::string steps = "<TiffData FirstT=\"0\"" + in("t0.ome.tif", "urn:uuid:0") + "<TiffData FirstT=\"1\"" +
+                                  in("t1.ome.tif", "urn:uuid:1");
+        const Volume step = load(4, ome(omeImage(places, steps), "UUID=\"urn:uuid:1\""), 1);
+        CHECK(pagesOf(step) == std::vector{2, 3});
+        CHECK(hasNotice(step, "4 of 8 pictures are in other files and are not shown: t0.ome.tif"));
+        // Every second slice: they are twice as far apart.
+        const std::string far = "DimensionOrder=\"XYZCT\" SizeZ=\"4\" PhysicalSizeX=\"1\" PhysicalSizeY=\"1\" "
+                                "PhysicalSizeZ=\"1.5\"";
+        const Volume even =
+            load(2, ome(omeImage(far, data(0, 0, 0, 0) + data(1, 2, 0, 0) +
+                                          data(0, 1, 0, 0, " PlaneCount=\"1\"" + in("b.ome.tif", "2")) +
+                                          data(1, 3, 0, 0, " PlaneCount=\"1\"" + in("b.ome.tif", "2")))));
+        CHECK(pagesOf(even) == std::vector{0, 1});
+        CHECK(even.geometry().spacing == Vec3(1, 1, 3));
+        // All are in one file, which has got another name.
+        const Volume renamed = load(3, ome(omeImage(stack, "<TiffData" + in("old.ome.tif", "urn:uuid:1"))));
+        CHECK(pagesOf(renamed) == std::vector{0, 1, 2});
+        CHECK(renamed.notices.empty());
+        // Which of several is this one nobody knows.
+        const std::string others = data(0, 0, 0, 0, in("x.ome.tif", "1")) + data(0, 1, 0, 0, in("y.ome.tif", "2"));
+        const Volume unknown = load(2, ome(omeImage(stack, others)));
+        CHECK(pagesOf(unknown) == std::vector{0, 1});
+        CHECK(hasNotice(unknown, "other files (x.ome.tif, y.ome.tif)"));
+        const Volume apart = load(2, ome("<BinaryOnly MetadataFile=\"all.companion.ome\" UUID=\"urn:uuid:1\"/>"));
+        CHECK(hasNotice(apart, "'all.companion.ome'"));
+    }
+}
+
+TEST_CASE("times and distances of OME-XML are converted, and what is not known is said", "[images]") {
+    const TempFolder folder;
+    const auto file = [&](const std::string& attributes) {
+        return at(folder.write("a.ome.tif", tiffFile(pages(2, ome(omeImage(attributes, ""))))));
+    };
+    for (const auto& [unit, seconds] : {std::pair{"", 3.0},
+                                        {"TimeIncrementUnit=\"s\"", 3.0},
+                                        {"TimeIncrementUnit=\"ms\"", 0.003},
+                                        {"TimeIncrementUnit=\"µs\"", 3e-6},
+                                        {"TimeIncrementUnit=\"min\"", 180.0},
+                                        {"TimeIncrementUnit=\"h\"", 10800.0}}) {
+        const FileContents contents =
+            contentsOf(file("SizeZ=\"1\" SizeT=\"2\" TimeIncrement=\"3\" " + std::string(unit)));
+        REQUIRE(contents.times.size() == 2);
+        CHECK(contents.times[1] == Approx(seconds));
+        CHECK(contents.timeUnit == "s");
+    }
+    // All in the unit of x.
+    const std::string stack = "SizeZ=\"2\" PhysicalSizeXUnit=\"nm\" PhysicalSizeX=\"65\" ";
+    const Volume flat = loadVolume(file(stack + "PhysicalSizeYUnit=\"nm\" PhysicalSizeY=\"65\""));
+    CHECK(flat.geometry().spacing == Vec3(65, 65, 65));
+    CHECK(hasNotice(flat, "how far voxels are apart along z"));
+    const Volume full = loadVolume(file(stack + "PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"2\"")); // micrometres
+    CHECK(full.geometry().spacing == Vec3(65, 500, 2000));
+    CHECK(full.notices.empty());
+    const Volume pixels = loadVolume(file(stack + "PhysicalSizeY=\"65\" PhysicalSizeYUnit=\"nm\" PhysicalSizeZ=\"2\" "
+                                                  "PhysicalSizeZUnit=\"pixel\""));
+    CHECK(pixels.geometry().spacing == Vec3(65, 65, 2));
+    CHECK(hasNotice(pixels, "'pixel'"));
+}
+
+TEST_CASE("colours of OME-TIFF are no pages", "[images]") {
+    const TempFolder folder;
+    std::vector<TiffPage> all;
+    for (int n = 0; n < 4; ++n) {
+        TiffPage page;
+        page.bits = 8;
+        page.samples = 3;
+        for (int i = 0; i < 18; ++i) page.pixels += static_cast<char>(50 * n + i);
+        all.push_back(page);
+    }
+    for (const char* data : {"", "<TiffData IFD=\"0\" PlaneCount=\"4\"/>"}) {
+        all[0].description = ome(omeImage("DimensionOrder=\"XYCZT\" SizeZ=\"2\" SizeC=\"3\" SizeT=\"2\"",
+                                          "<Channel ID=\"c\" SamplesPerPixel=\"3\"/>" + std::string(data)));
+        VolumeSource source = at(folder.write("rgb.ome.tif", tiffFile(all)));
+        const FileContents contents = contentsOf(source);
+        CHECK(contents.dims == Int3(3, 2, 2));
+        CHECK(contents.components == 3);
+        CHECK(contents.steps == 2);
+        source.step = 1;
+        source.component = 2;
+        const Volume blue = loadVolume(source);
+        CHECK(blue.value(6) == 152); // page 3, the third sample
+        CHECK(blue.notices == std::vector<std::string>{"component 2 of 3 is shown"});
+    }
+}
+
+TEST_CASE("pixels of one bit are 0 and 1", "[images]") {
+    const TempFolder folder;
+    TiffPage page;
+    page.width = 10;
+    page.height = 2;
+    page.bits = 1;
+    page.pixels = "\xa0\x40\x01\x80"; // 1010000001, 0000000110
+    for (const int rows : {0, 1}) {
+        const Volume mask = loadVolume(at(folder.write("mask.tif", tiffFile({page, page}, {.rowsPerStrip = rows}))));
+        CHECK(mask.sampleType() == SampleType::U8);
+        CHECK(mask.dims() == Int3(10, 2, 2));
+        std::string bits;
+        for (std::size_t i = 0; i < 40; ++i) bits += mask.value(i) == 1 ? '1' : mask.value(i) == 0 ? '0' : '?';
+        CHECK(bits == "10100000010000000110"
+                      "10100000010000000110");
+        CHECK(mask.notices.empty());
+    }
+    // Beside pages of bytes they are of another kind.
+    TiffPage bytes;
+    bytes.width = 10;
+    bytes.bits = 8;
+    bytes.pixels = std::string(20, '\2');
+    CHECK(
+        hasNotice(loadVolume(at(folder.write("both.tif", tiffFile({bytes, page})))), "1 page of another size or type"));
+}
+
+TEST_CASE("pictures that are meant to be shown another way say so", "[images]") {
+    const TempFolder folder;
+    const auto load = [&](int photometric, int orientation) {
+        std::vector<TiffPage> all = pages(2);
+        for (TiffPage& page : all) {
+            page.photometric = photometric;
+            page.orientation = orientation;
+        }
+        Volume volume = loadVolume(at(folder.write("a.tif", tiffFile(all))));
+        CHECK(pagesOf(volume) == std::vector{0, 1}); // as stored
+        CHECK(volume.value(5) == 5);
+        return volume;
+    };
+    CHECK(load(1, 1).notices.empty());
+    CHECK(hasNotice(load(0, 1), "MINISWHITE"));
+    CHECK(hasNotice(load(1, 4), "mirrored from top to bottom (Orientation 4)"));
+    CHECK(hasNotice(load(1, 6), "turned by 90° clockwise (Orientation 6)"));
+    CHECK(load(1, 8).notices.size() == 1); // not once for each page
+}
+
+TEST_CASE("a picture that is missing in a folder is named", "[images]") {
+    const TempFolder folder;
+    fs::create_directory(folder.path("slices"));
+    for (const char* name : {"slices/img001.tif", "slices/img002.tif", "slices/img004.tif"})
+        folder.write(name, tiffFile({pages(1).back()}));
+    CHECK(hasNotice(loadVolume(at(folder.path("slices"))),
+                    "1 picture is missing between the numbered ones (img003.tif)"));
+    folder.write("slices/img003.tif", tiffFile({pages(1).back()}));
+    CHECK(loadVolume(at(folder.path("slices"))).notices.empty());
+    folder.write("slices/img900.tif", tiffFile({pages(1).back()}));
+    CHECK(hasNotice(loadVolume(at(folder.path("slices"))), "895 pictures are missing between the numbered ones:"));
+}
+
+TEST_CASE("a picture alone is refused as one slice", "[images]") {
+    const TempFolder folder;
+    const std::string png = folder.write("slice.png", "\x89PNG\r\n\x1a\n and what follows");
+    CHECK_THROWS_WITH(loadVolume(at(png)), Contains("one slice, not a volume") && Contains("folder"));
+    CHECK_FALSE(mayBeHeaderless(png));
+    CHECK(mayBeHeaderless(folder.write("numbers.png", std::string(64, '\7'))));
 }
 
 TEST_CASE("a folder of pictures is one volume, in the order in which people count", "[images]") {
@@ -327,6 +611,19 @@ TEST_CASE("what is wrong with a TIFF file is told", "[images]") {
     std::vector<TiffPage> broken = pages(2);
     broken[1].height = 2000;
     CHECK_THROWS_AS(loadVolume(at(folder.write("broken.tif", tiffFile({broken[1]})))), FileError);
+    // Numbers that are not read, by what they are; a page of several slices.
+    const auto ofNumbers = [&](int bits, int format, int depth = 0) {
+        TiffPage page;
+        page.bits = bits;
+        page.format = format;
+        page.depth = depth;
+        page.pixels = std::string(48, '\0');
+        return at(folder.write("numbers.tif", tiffFile({page})));
+    };
+    CHECK_THROWS_WITH(loadVolume(ofNumbers(16, 3)), Contains("16-bit floating-point") && Contains("32-bit"));
+    CHECK_THROWS_WITH(loadVolume(ofNumbers(64, 6)), Contains("complex"));
+    CHECK_THROWS_WITH(loadVolume(ofNumbers(12, 1)), Contains("12-bit integers") && Contains("8, 16 or 32"));
+    CHECK_THROWS_WITH(loadVolume(ofNumbers(16, 1, 6)), Contains("several slices (ImageDepth 6"));
     VolumeSource named = at(folder.write("a.tif", whole));
     named.array = "x";
     CHECK_THROWS_AS(loadVolume(named), UsageError);

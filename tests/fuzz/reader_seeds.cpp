@@ -147,6 +147,15 @@ void addPageWords(Seeds& seeds) {
                                 "PhysicalSizeZUnit=\"mm\" TimeIncrement=\"2\""));
     seeds.add("page_words", ome("DimensionOrder=\"XYCTZ\" SizeZ=\"1\" SizeC=\"1\" SizeT=\"5\" PhysicalSizeY=\"1e-3\""));
     seeds.add("page_words", "a microscope, 4 slices");
+    seeds.add("page_words", "ImageJ=1.53t\nimages=6\nslices=6\nunit=micron\nyunit=mm\nzunit=\\u00B5m\nspacing=-3.0\n"
+                            "finterval=20\ntunit=ms\ncf=0\nc0=-32768.0\nc1=1.0\nvunit=HU\nzeroclip=true\n");
+    // Images, and pages in other files and in another order.
+    seeds.add("page_words",
+              "<OME UUID=\"urn:uuid:1\"><Image Name=\"one\"><Pixels DimensionOrder=\"XYCZT\" SizeZ=\"3\" SizeC=\"3\" "
+              "SizeT=\"2\" TimeIncrement=\"5\" TimeIncrementUnit=\"ms\"><TiffData IFD=\"4\" FirstZ=\"0\" FirstC=\"1\" "
+              "FirstT=\"0\" PlaneCount=\"2\"/><TiffData FirstT=\"1\"><UUID FileName=\"b.ome.tif\">urn:uuid:2</UUID>"
+              "</TiffData></Pixels></Image><Image><Pixels/></Image></OME>");
+    seeds.add("page_words", "<OME><BinaryOnly MetadataFile=\"a.companion.ome\" UUID=\"urn:uuid:1\"/></OME>");
 }
 
 /// A line of 16 bytes is a picture, the first one their stack: see dicom_stack.cpp.

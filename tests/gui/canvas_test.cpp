@@ -73,6 +73,35 @@ int countPixels(const QImage& image, const QRectF& where, const std::function<bo
 
 } // namespace
 
+TEST_CASE("screen readers hear the point that keys select and move", "[canvas][spoken]") {
+    OpenWindow w;
+    TfCanvas& canvas = w.canvas();
+    canvas.setFineOpacityAxis(false); // height is opacity
+    CHECK(heardValue(canvas) == "9 points; none selected");
+    QTest::keyClick(&canvas, Qt::Key_PageDown);
+    QTest::keyClick(&canvas, Qt::Key_PageDown); // the second one, the peak of the first tent
+    const auto wanted = [&](const QString& opacity) {
+        const Scene& scene = w.services().scene();
+        const ValueRange range = scene.volume->range();
+        QString value = gui::numberText(scene.volume->valueOfIntensity(point(w, 1).x), range.hi - range.lo);
+        if (scene.unit && !scene.unit->empty()) value += " " + QString::fromStdString(*scene.unit);
+        return QStringLiteral("9 points; point 2 selected: value %1, opacity %2; in the feature %3")
+            .arg(value, opacity, QString::fromStdString(scene.tf.features[0].name))
+            .toStdString();
+    };
+    CHECK(point(w, 1).x == Approx(1.0 / 6));
+    CHECK(heardValue(canvas).toStdString() == wanted("0.5"));
+    QTest::keyClick(&canvas, Qt::Key_Up); // 1/128 of the height
+    CHECK(heardValue(canvas).toStdString() == wanted("0.5078"));
+    QTest::keyClick(&canvas, Qt::Key_Right);
+    CHECK(point(w, 1).x == Approx(1.0 / 6 + 1.0 / 128));
+    CHECK(heardValue(canvas).toStdString() == wanted("0.5078")); // with the new value
+    QTest::keyClick(&canvas, Qt::Key_Space);
+    CHECK(heardValue(canvas).toStdString() == wanted("0.5078, fixed"));
+    QTest::keyClick(&canvas, Qt::Key_Escape);
+    CHECK(heardValue(canvas) == "9 points; none selected");
+}
+
 TEST_CASE("a point is added, moved along one axis with Shift, and finely with Ctrl", "[canvas]") {
     OpenWindow w;
     const TransferFunction start = w.document().tf();

@@ -35,6 +35,7 @@
 
 #include "panels/panel.h"
 #include "widgets/input_habits.h"
+#include "widgets/spoken_value.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -100,11 +101,21 @@ public:
     void look(QWidget& root, const QString& place) {
         for (auto* widget : root.findChildren<QWidget*>())
             if (!isPart(*widget) && (isControl(*widget) || takesTab(*widget))) lookAt(*widget, root, place);
+        for (auto* widget : root.findChildren<QWidget*>())
+            if (dynamic_cast<Spoken*>(widget) != nullptr) hear(*widget, place);
     }
     const QStringList& faults() const { return m_faults; }
     int count() const { return m_count; }
+    std::size_t spokenCount() const { return m_heard.size(); }
 
 private:
+    /// What paints itself says what it shows, whether it takes Tab or not.
+    void hear(QWidget& widget, const QString& place) {
+        if (!m_heard.insert(&widget).second) return;
+        if (heardValue(widget).trimmed().isEmpty())
+            m_faults << QStringLiteral("%1: %2 “%3” says nothing of what it shows")
+                            .arg(place, widget.metaObject()->className(), widget.objectName());
+    }
     static bool takesTab(const QWidget& widget) { return (widget.focusPolicy() & Qt::TabFocus) != 0; }
 
     void lookAt(QWidget& widget, const QWidget& root, const QString& place) {
@@ -117,6 +128,10 @@ private:
                      widget.parentWidget() == nullptr ? QString() : widget.parentWidget()->objectName());
         const auto fault = [&](const char* what) { m_faults << who + ": " + what; };
         if (spokenName(widget).trimmed().isEmpty()) fault("has no name");
+        // Those of the toolkit speak for themselves.
+        const bool isOurs = QLatin1String(widget.metaObject()->className()).startsWith(QLatin1String("pellucid::"));
+        if (isOurs && !isControl(widget) && heardValue(widget).trimmed().isEmpty())
+            fault("says nothing of what it shows");
         const QString tip = tipOf(widget, root);
         const bool isClosing = is<QDialogButtonBox>(*widget.parentWidget()); // OK and Cancel
         if (tip.isEmpty() && !isClosing && !is<QTabBar>(widget)) fault("has no tip");
@@ -134,7 +149,7 @@ private:
     }
 
     QStringList m_faults;
-    std::set<const QWidget*> m_seen;
+    std::set<const QWidget*> m_seen, m_heard;
     int m_count = 0;
 };
 
@@ -213,6 +228,9 @@ TEST_CASE("every control of the window and its panels has a name, a tip, a unit 
     walk.look(*w.window.statusBar(), "status line");
     for (auto* bar : w.window.findChildren<QToolBar*>()) walk.look(*bar, "tool bar");
     CHECK(walk.count() > 200); // so that nothing has been left out by mistake
+    // Bars of targets, comparison and edges, curve, palette, strips of time and keys, globe, space, both of the probe,
+    // border, slices, both views; plots come with their panels.
+    CHECK(walk.spokenCount() >= 17);
     INFO(linesOf(walk.faults()));
     CHECK(walk.faults().isEmpty());
 }

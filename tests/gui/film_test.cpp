@@ -109,27 +109,30 @@ TEST_CASE("what is wrong with a film is read before its dialog comes back", "[fi
     QFile taken(folder.filePath("taken")); // a file, where a folder is wanted
     REQUIRE(taken.open(QIODevice::WriteOnly));
     int errors = 0, returns = 0;
-    withDialog([&](FilmDialog& dialog) {
-        dialog.findChild<QLineEdit*>("filmPath")->setText(taken.fileName());
-        // The error is alone on the screen …
-        QTimer::singleShot(0, &dialog, [&] {
-            QDialog* error = visible("errorDialog");
-            REQUIRE(error != nullptr);
-            CHECK(!dialog.isVisible());
-            ++errors;
-            // … and after it the dialog is there again, as it was filled in.
+    for (const QString& name : {taken.fileName(), folder.filePath("turn.avi")}) { // nor is that a name of a folder
+        withDialog([&](FilmDialog& dialog) {
+            dialog.findChild<QLineEdit*>("filmPath")->setText(name);
+            // The error is alone on the screen …
             QTimer::singleShot(0, &dialog, [&] {
-                CHECK(dialog.isVisible());
-                CHECK(visible("errorDialog") == nullptr);
-                CHECK(dialog.findChild<QLineEdit*>("filmPath")->text() == taken.fileName());
-                ++returns;
-                dialog.reject();
+                QDialog* error = visible("errorDialog");
+                REQUIRE(error != nullptr);
+                CHECK(!dialog.isVisible());
+                ++errors;
+                // … and after it the dialog is there again, as it was filled in.
+                QTimer::singleShot(0, &dialog, [&] {
+                    CHECK(dialog.isVisible());
+                    CHECK(visible("errorDialog") == nullptr);
+                    CHECK(dialog.findChild<QLineEdit*>("filmPath")->text() == name);
+                    ++returns;
+                    dialog.reject();
+                });
+                error->accept();
             });
-            error->accept();
+            dialog.accept();
         });
-        dialog.accept();
-    });
-    w.child<QAction>("saveFilmAction").trigger();
-    CHECK(errors == 1);
-    CHECK(returns == 1);
+        w.child<QAction>("saveFilmAction").trigger();
+    }
+    CHECK(errors == 2);
+    CHECK(returns == 2);
+    CHECK_FALSE(QFile::exists(folder.filePath("turn.avi")));
 }

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <QAccessible>
 #include <QImage>
 #include <QSignalSpy>
 #include <QTest>
@@ -138,6 +139,12 @@ struct OpenWindow {
         return *found;
     }
 };
+
+/// What a screen reader hears of what a widget shows.
+inline QString heardValue(QWidget& widget) {
+    QAccessibleInterface* const spoken = QAccessible::queryAccessibleInterface(&widget);
+    return spoken == nullptr ? QString() : spoken->text(QAccessible::Value);
+}
 
 /// Between channels of pixels, of 255.
 inline int largestDifference(const QImage& a, const QImage& b) {

@@ -185,6 +185,23 @@ TEST_CASE("frames are stepped, scrubbed and played without a step of the history
     CHECK(w.document().isClean());
 }
 
+TEST_CASE("screen readers hear the frame that keys go to", "[player][spoken]") {
+    SeriesWindow w;
+    CHECK(heardValue(w.strip()).startsWith("frame 1 of 6, t = 0 s")); // half a second each
+    QTest::keyClick(&w.strip(), Qt::Key_Right);
+    REQUIRE(waitFor([&] { return w.frame() == 1; }));
+    w.settle();
+    CHECK(heardValue(w.strip()).startsWith("frame 2 of 6, t = 0.5 s"));
+    QAccessibleValueInterface* const number = QAccessible::queryAccessibleInterface(&w.strip())->valueInterface();
+    REQUIRE(number != nullptr);
+    CHECK(number->currentValue().toInt() == 2);
+    CHECK(number->maximumValue().toInt() == 6);
+    number->setCurrentValue(5);
+    REQUIRE(waitFor([&] { return w.frame() == 4; }));
+    w.settle();
+    CHECK(heardValue(w.strip()).startsWith("frame 5 of 6, t = 2 s"));
+}
+
 TEST_CASE("the strip shows how many voxels have which value when", "[player]") {
     SeriesWindow w;
     w.waitUntilKnown();

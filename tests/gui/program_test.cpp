@@ -3,7 +3,10 @@
 
 #include <fstream>
 
+#include <QFile>
 #include <QProcess>
+#include <QRegularExpression>
+#include <QSet>
 #include <QTemporaryDir>
 
 #include "session/session_json.h"
@@ -63,6 +66,32 @@ TEST_CASE("without a file it opens on the knee", "[program]") {
     };
     CHECK(picture({}) == picture({"sample:knee"}));
     CHECK(start({"--help"}, false).out.contains("sample:knee"));
+}
+
+TEST_CASE("the manual has the options of --help, in the same words", "[program]") {
+    QFile file(PELLUCID_SOURCE_DIR "/docs/man/pellucid.1");
+    REQUIRE(file.open(QIODevice::ReadOnly));
+    const QString manual = QString::fromUtf8(file.readAll()).remove('\\');
+    const QString options = manual.section(".SH OPTIONS\n", 1).section(".SH ", 0, 0);
+    const Outcome help = start({"--help"}, false);
+    REQUIRE(help.status == 0);
+    // Of a help that breaks lines at blanks, without the brackets: "--tf <SPEC>  Transfer function: …".
+    const QString said = QString(help.out).remove('<').remove('>').simplified();
+    QSet<QString> inManual, inHelp;
+    for (const QString& entry : options.split(".TP\n", Qt::SkipEmptyParts)) {
+        static const QRegularExpression kHead("^\\.BI? (--[a-z]+)(?: \" ([A-Za-z]+)\")?\n");
+        const QRegularExpressionMatch head = kHead.match(entry);
+        if (!head.hasMatch()) continue; // of Qt: help and version
+        INFO(entry.toStdString());
+        inManual << head.captured(1);
+        CHECK(said.contains(
+            (head.captured(1) + " " + head.captured(2) + " " + entry.mid(head.capturedLength())).simplified()));
+    }
+    static const QRegularExpression kOption("^  (--[a-z-]+)", QRegularExpression::MultilineOption);
+    for (auto match = kOption.globalMatch(help.out); match.hasNext();) inHelp << match.next().captured(1);
+    inHelp.remove("--help-all");
+    CHECK(inManual.size() >= 9);
+    CHECK(inManual == inHelp);
 }
 
 TEST_CASE("a theme can be named", "[program][theme]") {

@@ -194,6 +194,43 @@ TEST_CASE("targets by keys: a digit opens the box, L locks and leaves the light 
     CHECK_FALSE(boxOf(w).isVisible());
 }
 
+TEST_CASE("screen readers hear the target that keys change", "[targets][spoken]") {
+    OpenWindow w;
+    TargetBars& bars = barsOf(w);
+    w.settle();
+    bars.setFocus();
+    QTest::keyClick(&bars, Qt::Key_Down); // the second of three
+    const auto wanted = [&](const QString& targetText) {
+        w.settle();
+        const FeatureMeasures& m = w.document().measures()->features[1];
+        return QStringLiteral("%1: %2 of the attention now, %3 of what is seen, target %4; feature 2 of 3")
+            .arg(QString::fromStdString(w.document().tf().features[1].name), QString::number(m.vws, 'f', 3),
+                 QString::number(m.visibility, 'f', 3), targetText);
+    };
+    CHECK(heardValue(bars).toStdString() == wanted("0.333").toStdString()); // a third each
+    QTest::keyClick(&bars, Qt::Key_Right);                                  // 1/3 + 0.01
+    CHECK(heardValue(bars).toStdString() == wanted("0.343").toStdString());
+
+    // On Linux values are numbers, and words come as the description.
+    QAccessibleInterface* const spoken = QAccessible::queryAccessibleInterface(&bars);
+    CHECK(spoken->role() == QAccessible::Slider);
+    CHECK(spoken->text(QAccessible::Name) == "Attention on the features and their targets");
+    CHECK(spoken->text(QAccessible::Description).startsWith(heardValue(bars)));
+    QAccessibleValueInterface* const number = spoken->valueInterface();
+    REQUIRE(number != nullptr);
+    CHECK(number->currentValue().toDouble() == Approx(1.0 / 3 + 0.01));
+    CHECK(number->minimumValue().toDouble() == 0);
+    CHECK(number->maximumValue().toDouble() == 1);
+    CHECK(number->minimumStepSize().toDouble() == 0.01); // of Left and Right
+    number->setCurrentValue(0.5);
+    checkTargets(w, {0.25, 0.5, 0.25});
+
+    QTest::keyClick(&bars, Qt::Key_L);
+    CHECK(heardValue(bars).toStdString() == wanted("0.500, locked").toStdString());
+    QTest::keyClick(&bars, Qt::Key_Down);
+    CHECK(heardValue(bars).endsWith("target 0.250; feature 3 of 3"));
+}
+
 TEST_CASE("presets set all targets, locked ones stay", "[targets]") {
     OpenWindow w;
     TargetBars& bars = barsOf(w);

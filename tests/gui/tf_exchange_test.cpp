@@ -1,13 +1,17 @@
 // Transfer functions for other programs, from the window.
 #include "gui_support.h"
 
+#include <algorithm>
+
 #include <QApplication>
 #include <QCheckBox>
 #include <QClipboard>
 #include <QComboBox>
 #include <QDialog>
+#include <QFileDialog>
 #include <QLabel>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QPushButton>
 #include <QTimer>
 
@@ -33,6 +37,10 @@ void whenOpen(MainWindow& window, const char* name, const Answer& answer) {
         answer(*dialog);
     });
     timer->start(10);
+}
+
+bool says(OpenWindow& w, const QString& words) {
+    return std::ranges::any_of(w.services().notices().all(), [&](const Notice& n) { return n.text.contains(words); });
 }
 
 } // namespace
@@ -77,6 +85,98 @@ TEST_CASE("lines of Python go to the clipboard", "[window][exchange]") {
         CHECK(QApplication::clipboard()->text().contains("points = ["));
         CHECK(QApplication::clipboard()->text().contains("import"));
     }
+    CHECK(says(w, "3 features are not stored"));
+    CHECK_FALSE(says(w, "is known"));
+}
+
+TEST_CASE("what another program lays over the data keeps its values in the window", "[window][exchange]") {
+    OpenWindow w;
+    const test::TempFolder folder;
+    TransferFunction ramp;
+    ramp.points = {{0, 0.2, {0, 0, 1}, false, {}}, {1, 0.6, {0, 0, 1}, false, {}}};
+    ramp.range = ValueRange{50, 150};
+    writeTfFile(ramp, {}, folder.path("ramp.tf.json"));
+    w.opening().openTf(QString::fromStdString(folder.path("ramp.tf.json")));
+    w.settle();
+    REQUIRE(w.document().volume()->range() == ValueRange{50, 150});
+    const ValueRange data = w.document().volume()->dataRange();
+    REQUIRE((data.lo < 40 && data.hi > 160));
+    TfExchangeController exchange(w.services(), w.opening());
+    const QString file = QString::fromStdString(folder.path("ramp.itksnap.xml"));
+    REQUIRE(exchange.exportTf(itkSnapFormat(), file));
+
+    w.opening().openTf(file);
+    w.settle();
+    CHECK(w.document().volume()->range() == data);
+    const auto opacityOf = [&](double value) {
+        return w.document().tf().opacity((value - data.lo) / (data.hi - data.lo));
+    };
+    CHECK(opacityOf(40) == Approx(0.2).margin(0.003)); // steps of 8 bits
+    CHECK(opacityOf(100) == Approx(0.4).margin(0.003));
+    CHECK(opacityOf(160) == Approx(0.6).margin(0.003));
+    CHECK(says(w, "positions 0 to 1 are put on the values"));
+}
+
+TEST_CASE("the window asks which of several transfer functions in a file is meant", "[window][exchange]") {
+    OpenWindow w;
+    const test::TempFolder folder;
+    const auto preset = [](const std::string& name, const std::string& color) {
+        return R"({"Name": ")" + name + R"(", "RGBPoints": [0, )" + color + ", 1, " + color +
+               R"(], "Points": [0, 0.2, 0.5, 0, 1, 0.6, 0.5, 0]})";
+    };
+    const QString file = QString::fromStdString(folder.write("several.json", "[" + preset("red", "1, 0, 0") + ", " +
+                                                                                 preset("green", "0, 1, 0") + ", " +
+                                                                                 preset("blue", "0, 0, 1") + "]"));
+    const auto choose = [](const QString& name) {
+        return [name](QDialog& dialog) {
+            auto& list = *dialog.findChild<QListWidget*>("presetList");
+            CHECK(list.count() == 3);
+            const QList<QListWidgetItem*> found = list.findItems(name, Qt::MatchExactly);
+            CHECK(found.size() == 1);
+            if (!found.isEmpty()) list.setCurrentItem(found.front());
+            dialog.accept();
+        };
+    };
+    const auto middle = [&] { return w.document().tf().color(0.5); };
+    const TransferFunction before = w.document().tf();
+
+    whenOpen(w.window, "presetDialog", [](QDialog& dialog) {
+        CHECK(dialog.findChild<QLabel*>("presetWhat")->text().startsWith("several.json holds 3"));
+        dialog.reject();
+    });
+    w.opening().openPath(file);
+    w.settle();
+    CHECK(w.document().tf() == before);
+
+    whenOpen(w.window, "presetDialog", choose("blue"));
+    w.opening().openPath(file); // as it is dropped
+    w.settle();
+    CHECK(middle().b == Approx(1));
+    CHECK(middle().r == Approx(0).margin(1e-9));
+    CHECK(says(w, "positions 0 to 1 are put on the values"));
+    CHECK_FALSE(says(w, "takes another"));
+
+    // The same question comes before that for the parts.
+    const double opacity = w.document().tf().opacity(0.25);
+    auto* const files = new QTimer(&w.window);
+    QObject::connect(files, &QTimer::timeout, &w.window, [&w, &file, files] {
+        auto* dialog = w.window.findChild<QFileDialog*>();
+        if (dialog == nullptr || !dialog->isVisible()) return;
+        files->stop();
+        dialog->findChild<QLineEdit*>("fileNameEdit")->setText(file);
+        QMetaObject::invokeMethod(dialog, "accept");
+    });
+    files->start(10);
+    whenOpen(w.window, "presetDialog", choose("green"));
+    whenOpen(w.window, "tfPartsDialog", [](QDialog& dialog) {
+        dialog.findChild<QCheckBox*>("tfPartOpacities")->setChecked(false);
+        dialog.accept();
+    });
+    w.child<QAction>("openTfPartsAction").trigger();
+    w.settle();
+    CHECK(middle().g == Approx(1));
+    CHECK(middle().b == Approx(0).margin(1e-9));
+    CHECK(w.document().tf().opacity(0.25) == Approx(opacity));
 }
 
 TEST_CASE("colours, opacities and range of a file are taken one by one in the window", "[window][exchange]") {

@@ -20,6 +20,7 @@
 #include "panels/target_bars.h"
 #include "view/cpu_surface.h"
 #include "widgets/opacity_editor.h"
+#include "widgets/sentence.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -224,6 +225,24 @@ TEST_CASE("the raw dialog guesses by the voxels, packed ones, too, and shows a s
     CHECK(open->isEnabled());
 }
 
+TEST_CASE("what the core says becomes a sentence, and names stay as they are", "[notices]") {
+    CHECK(asSentence("no voxel has a valid value") == "No voxel has a valid value.");
+    CHECK(asSentence("cannot write the file, /tmp/a b.png, choose another folder") ==
+          "Cannot write the file, /tmp/a b.png, choose another folder.");
+    CHECK(asSentence("The board is left out.") == "The board is left out.");
+    CHECK(asSentence("Is it there?") == "Is it there?");
+    for (const char* name : {"page.html", "f07", "scale_factor", "\"a b\"", "t:", "/data/a"})
+        CHECK(asSentence(QString(name) + " is odd") == QString(name) + " is odd.");
+
+    Notices notices;
+    notices.add({"no voxel has a valid value", {}});
+    notices.add({"no voxel has a valid value", {}});
+    REQUIRE(notices.all().size() == 1);
+    CHECK(notices.all()[0].text == "No voxel has a valid value.");
+    notices.remove("no voxel has a valid value"); // as it was added
+    CHECK(notices.all().empty());
+}
+
 TEST_CASE("notices stay until they are dismissed", "[notices]") {
     Notices notices;
     QWidget window;
@@ -233,7 +252,7 @@ TEST_CASE("notices stay until they are dismissed", "[notices]") {
     notices.add({"b", {}});
     notices.add({"a", {}});
     CHECK_FALSE(bar.isHidden());
-    CHECK(bar.findChild<QLabel*>("noticeText")->text() == "a\nb");
+    CHECK(bar.findChild<QLabel*>("noticeText")->text() == "A.\nB.");
     bar.findChild<QToolButton*>("noticeClose")->click();
     CHECK(bar.isHidden());
     CHECK(notices.all().empty());

@@ -573,11 +573,11 @@ TEST_CASE("volumes with nothing to see open and say so", "[window]") {
     writeNrrd(Volume(geometry, std::vector<float>(120, std::nanf(""))), empty.toStdString());
     w.opening().openPath(constant);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
-    CHECK(notice.text() == "all voxels have the value 7"); // what the loader says, once
+    CHECK(notice.text() == "All voxels have the value 7."); // what the loader says, once
     w.settle();
     w.opening().openPath(empty);
     REQUIRE(waitFor([&] { return opened.count() == 2; }));
-    CHECK(notice.text() == "no voxel has a valid value");
+    CHECK(notice.text() == "No voxel has a valid value.");
     w.settle();
     w.refining().refine(); // nothing to do, and no harm
     w.settle();

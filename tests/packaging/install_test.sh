@@ -63,6 +63,15 @@ done
 if [ -d "$share/applications" ]; then
     checked desktop-file-validate desktop-file-validate "$share/applications/pellucid.desktop"
     checked appstreamcli appstreamcli validate --no-net "$share/metainfo/pellucid.metainfo.xml"
+    # The same with a public address for screenshots, which may be that of any folder with the pictures of docs/images.
+    cmake -DPELLUCID_SCREENSHOT_URL=https://example.org/images/ -DPROJECT_SOURCE_DIR="$source" -DPROJECT_BINARY_DIR="$work" \
+        -DPROJECT_VERSION=1.0.0 -DPELLUCID_ISO_DAY=2024-01-01 -P "$source/cmake/metainfo.cmake"
+    checked appstreamcli appstreamcli validate --no-net "$work/pellucid.metainfo.xml"
+    pictures=$(sed -n 's|.*>https://example.org/images/\([^/<]*\)</image>.*|\1|p' "$work/pellucid.metainfo.xml")
+    [ "$(wc -w <<<"$pictures")" -ge 3 ] || fail "the metainfo has the screenshots $pictures"
+    for picture in $pictures; do
+        [ -f "$source/docs/images/$picture" ] || fail "docs/images has no $picture"
+    done
     for size in 16 24 32 48 64 128 256 512; do
         # Width and height stand at bytes 16 to 23 of a PNG file.
         sizes=$(od -An -tu1 -j16 -N8 "$share/icons/hicolor/${size}x$size/apps/pellucid.png" | tr -s ' \n' ' ')

@@ -30,11 +30,19 @@ public:
     void bytes(std::uint16_t group, std::uint16_t element, const char* type, const std::string& value) {
         m_elements[{group, element}] = {type, value.size() % 2 == 0 ? value : value + '\0'};
     }
+    /// Pixels that are packed, in parts of an even number of bytes behind a table of where pictures begin.
+    void packedPixels(const std::vector<std::string>& parts, const std::string& table = "") {
+        std::string value;
+        const auto add = [&](const std::string& part) { value += item(part.size()) + part; };
+        add(table);
+        for (const std::string& part : parts) add(part);
+        m_elements[{0x7fe0, 0x0010}] = {"OB", value + std::string("\xfe\xff\xdd\xe0\0\0\0\0", 8), true};
+    }
     void items(std::uint16_t group, std::uint16_t element, const std::vector<DicomElements>& items) {
         std::string value;
         for (const DicomElements& item : items) {
             const std::string inside = item.encoded();
-            value += std::string("\xfe\xff\x00\xe0", 4) + length(inside.size()) + inside;
+            value += DicomElements::item(inside.size()) + inside;
         }
         m_elements[{group, element}] = {"SQ", value};
     }
@@ -44,13 +52,13 @@ public:
     std::string encoded() const {
         std::string all;
         for (const auto& [tag, element] : m_elements) {
-            const auto& [type, value] = element;
+            const auto& [type, value, isOpen] = element;
             for (const std::uint16_t part : {tag.first, tag.second})
                 all += {static_cast<char>(part & 255), static_cast<char>(part >> 8)};
             all += type;
-            const bool isLong = type == "OB" || type == "OW" || type == "SQ" || type == "UN";
+            const bool isLong = type == "OB" || type == "OW" || type == "OV" || type == "SQ" || type == "UN";
             if (isLong)
-                all += std::string(2, '\0') + length(value.size());
+                all += std::string(2, '\0') + (isOpen ? std::string(4, '\xff') : length(value.size()));
             else
                 all += {static_cast<char>(value.size() & 255), static_cast<char>(value.size() >> 8)};
             all += value;
@@ -59,12 +67,17 @@ public:
     }
 
 private:
+    struct Element {
+        std::string type, value;
+        bool isOpen = false; ///< has no length, but an end of its own
+    };
+    static std::string item(std::size_t bytes) { return std::string("\xfe\xff\x00\xe0", 4) + length(bytes); }
     static std::string length(std::size_t bytes) {
         std::string four(4, '\0');
         for (int i = 0; i < 4; ++i) four[static_cast<std::size_t>(i)] = static_cast<char>(bytes >> (8 * i) & 255);
         return four;
     }
-    std::map<std::pair<std::uint16_t, std::uint16_t>, std::pair<std::string, std::string>> m_elements;
+    std::map<std::pair<std::uint16_t, std::uint16_t>, Element> m_elements;
 };
 
 /// One slice; what is empty or 0 is not written.

@@ -15,6 +15,9 @@ struct TiffPage {
     std::string pixels;      ///< bytes, little endian
     std::string description; ///< ImageDescription; empty: none
     int pixelsPerUnit = 0;   ///< XResolution and YResolution; 0: none
+    int photometric = -1;    ///< PhotometricInterpretation, 0 is WhiteIsZero; -1: as the samples are
+    int orientation = 0;     ///< 0: no such tag
+    int depth = 0;           ///< ImageDepth; 0: no such tag
 };
 
 /// How the pages of a file are written.
@@ -72,10 +75,14 @@ inline std::string tiffFile(const std::vector<TiffPage>& pages, const TiffForm& 
         entries.push_back({258, 3, static_cast<std::uint64_t>(page.samples),
                            page.samples > 2 ? put(bits) : static_cast<std::uint64_t>(page.bits)});
         entries.push_back({259, 3, 1, static_cast<std::uint64_t>(page.compression)});
-        entries.push_back({262, 3, 1, page.samples >= 3 ? 2u : 1u});
+        entries.push_back({262, 3, 1,
+                           static_cast<std::uint64_t>(page.photometric >= 0 ? page.photometric
+                                                      : page.samples >= 3   ? 2
+                                                                            : 1)});
         if (!page.description.empty())
             entries.push_back({270, 2, page.description.size() + 1, put(page.description + '\0')});
         entries.push_back({273, 4, strips, strips > 1 ? put(starts) : pixels});
+        if (page.orientation > 0) entries.push_back({274, 3, 1, static_cast<std::uint64_t>(page.orientation)});
         entries.push_back({277, 3, 1, static_cast<std::uint64_t>(page.samples)});
         entries.push_back({278, 4, 1, rows});
         entries.push_back({279, 4, strips, strips > 1 ? put(lengths) : page.pixels.size()});
@@ -84,6 +91,7 @@ inline std::string tiffFile(const std::vector<TiffPage>& pages, const TiffForm& 
                 entries.push_back(
                     {tag, 5, 1, put(number(static_cast<std::uint64_t>(page.pixelsPerUnit), 4) + number(1, 4))});
         entries.push_back({339, 3, 1, static_cast<std::uint64_t>(page.format)});
+        if (page.depth > 0) entries.push_back({32997, 4, 1, static_cast<std::uint64_t>(page.depth)});
         const std::size_t directory = file.size();
         file.replace(link, 4, number(directory, 4));
         file += number(entries.size(), 2);

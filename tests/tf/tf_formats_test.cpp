@@ -18,6 +18,7 @@
 #include "tf/formats/tf_parts.h"
 #include "tf/formats/tf_snippets.h"
 #include "tf/shapes.h"
+#include "tf/shown_tf.h"
 
 using namespace pellucid;
 using Catch::Contains;
@@ -75,7 +76,7 @@ TEST_CASE("each format writes what it reads back as the same curves", "[tf][form
         const bool hasRange = name != "imagevis3d" && name != "itksnap";
         CHECK(read.tf.range.has_value() == hasRange);
         if (hasRange) CHECK(*read.tf.range == *tf.range);
-        CHECK(says(read.notices, "gives no data range") == !hasRange);
+        CHECK(read.positions.has_value() == !hasRange);
         const bool hasOpacities = name != "vtkjs" && name != "paraview-xml";
         const bool hasTable = name == "niivue" || name == "imagevis3d"; // steps have the width of an entry
         const double colorMargin = name == "niivue" ? 0.02 : name == "itksnap" || name == "voreen" ? 0.003 : 1e-3;
@@ -112,6 +113,59 @@ TEST_CASE("what is lost is said", "[tf][formats]") {
         CHECK(says(more, "no volume is known"));
     }
     CHECK(writtenTf(pellucidTfFormat(), {tf, {}, g, ""}).losses.empty());
+}
+
+TEST_CASE("programs that lay a curve over the data get it for all values of the data", "[tf][formats]") {
+    TransferFunction ramp; // holds beyond its ends
+    ramp.points = {{0, 0.2, {1, 0, 0}, false, {}}, {1, 0.6, {0, 0, 1}, false, {}}};
+    ramp.range = ValueRange{-1000, 3000};
+    const TransferFunction hidden = withFeatureHidden(sample(), 0, true); // −600 to 600
+    const Geometry g = volume(Int3(64), Vec3(1));
+    for (const char* name : {"itksnap", "imagevis3d"})
+        for (const TransferFunction& tf : {sample(), ramp, hidden})
+            for (const ValueRange& data : {ValueRange{-2000, 6000}, ValueRange{-500, 500}}) {
+                INFO(name << " " << data.lo);
+                const TfFormat& format = tfFormatNamed(name);
+                const WrittenTf written = writtenTf(format, {tf, {}, g, "mine", data});
+                CHECK(says(written.losses, data.lo == -2000 ? "all values of the data, -2000 to 6000"
+                                                            : "all values of the data, -500 to 500"));
+                CHECK_FALSE(says(written.losses, "assumed"));
+                const ReadTf read = format.read(ForeignFile("a", written.text));
+                CHECK(read.spansData);
+                const TransferFunction seen = shownTf(tf);
+                for (double value = data.lo; value <= data.hi; value += 10) {
+                    if (value == 0) continue; // the step
+                    INFO(value);
+                    const double x = (value - data.lo) / (data.hi - data.lo);
+                    const double own = std::clamp((value + 1000) / 4000, 0.0, 1.0);
+                    // Half a step of 8 bits is 0.002; an entry of the table at most 2 values wide.
+                    CHECK(read.tf.opacity(x) == Approx(seen.opacity(own)).margin(0.003));
+                    if (seen.opacity(own) > 0) CHECK(read.tf.color(x).b == Approx(seen.color(own).b).margin(0.005));
+                }
+            }
+    // Without the data the curve is written as it is, and that is told.
+    const WrittenTf unknown = writtenTf(itkSnapFormat(), {ramp, {}, {}, ""});
+    CHECK(says(unknown.losses, "assumed to be -1000 to 3000; name a volume"));
+    CHECK(readOf("itksnap", unknown.text).tf.opacity(0.5) == Approx(0.4).margin(0.002));
+    ramp.range.reset();
+    CHECK(says(writtenTf(itkSnapFormat(), {ramp, {}, {}, ""}).losses, "which 0 to 1 are assumed to stand for"));
+
+    // Opened they are put on the data again; what other programs stretch over a window is not.
+    Geometry line;
+    line.dims = Int3(3, 1, 1);
+    const Volume small(line, Samples(std::vector<std::uint8_t>{10, 40, 90}));
+    CHECK(forVolume(readOf("itksnap", unknown.text), small).range == ValueRange{10, 90});
+    CHECK_FALSE(forVolume(readOf("niivue", R"({"R": [0, 255], "G": [0, 0], "B": [0, 0]})"), small).range);
+}
+
+TEST_CASE("a file without a range is told with its positions and the values that they are put on", "[tf][formats]") {
+    const Geometry g = volume(Int3(64), Vec3(1));
+    const ReadTf preset = readOf("paraview", R"([{"Name": "a", "RGBPoints": [-1, 0, 0, 0, 1, 1, 1, 1]}])");
+    CHECK(preset.positions == ValueRange{-1, 1});
+    CHECK(says(openingNotices(preset, g, ValueRange{40, 80}), "its positions -1 to 1 are put on the values 40 to 80"));
+    CHECK(says(openingNotices(preset, g), "its positions -1 to 1 stand for"));
+    const ReadTf placed = readOf("paraview", R"([{"Name": "a", "RGBPoints": [-1, 0, 0, 0, 2, 1, 1, 1]}])");
+    CHECK_FALSE(says(openingNotices(placed, g, ValueRange{40, 80}), "no data range"));
 }
 
 TEST_CASE("opacities are written for the length that a program takes them for", "[tf][formats]") {
@@ -165,7 +219,7 @@ TEST_CASE("presets of ParaView are read as it writes them", "[tf][formats]") {
     const ReadTf first = readOf("paraview", list);
     CHECK(says(first.notices, "the first of 2 presets, 'first'"));
     CHECK(says(first.notices, "colours only"));
-    CHECK(says(first.notices, "gives no data range"));
+    CHECK(first.positions == ValueRange{0, 1});
     CHECK(!first.tf.range); // 0 to 1 is whatever the range is
     CHECK(first.length.kind == OpacityLength::Kind::ParaView);
     CHECK_THAT(first.tf.extraJson, Contains("somebody"));
@@ -238,6 +292,82 @@ TEST_CASE("volume properties of 3D Slicer are read in all three files", "[tf][fo
     CHECK_THAT(messageOf("slicer-vp", "1\n1\n0,9\n0.1\n0.2\n10\n4 0 0 1 1\n4 0 1 1 1\n8 0 1 0 0 1 1 1 1\n"),
                Contains("'0,9' is not a number") && Contains("line 3"));
     CHECK_THAT(messageOf("slicer-vp", "1\n1\n1\n1\n1\n1\n3 0 0 1\n4 0 1 1 1\n4 0 1 0 0\n"), Contains("multiple of 2"));
+}
+
+TEST_CASE("each of 3D Slicer's presets in a file is opened by its name", "[tf][formats]") {
+    const test::TempFolder folder;
+    const std::string file = folder.write("presets.xml", R"(<?xml version="1.0" encoding="UTF-8"?>
+<MRML version="4.0" userTags="">
+ <VolumeProperty id="vtkMRMLVolumePropertyNode1" name="CT-One" references="" interpolation="1" shade="1" diffuse="0.9"
+  ambient="0.1" specular="0.2" specularPower="10" scalarOpacity="8 -3024 0 60 0 120 0.4 3000 0.4"
+  gradientOpacity="4 0 1 255 1" colorTransfer="8 -3024 0 0 0 3000 1 0.5 0" effectiveRange="-3024 3000" selectable="true"/>
+ <VolumeProperty id="vtkMRMLVolumePropertyNode2" name="MR #2" references="" interpolation="0" shade="0" diffuse="0.6"
+  ambient="0.3" specular="0.1" specularPower="5" scalarOpacity="6 0 0 50 0.1 200 0.7"
+  gradientOpacity="6 0 0 10 0.5 80 1" colorTransfer="8 0 0.2 0.2 0.2 200 1 1 1" effectiveRange="0 -1"/>
+ <VolumeProperty id="vtkMRMLVolumePropertyNode3" name="Third" scalarOpacity="8 0 0 100 0 100 0.5 255 0.5"
+  colorTransfer="8 0 1 0 0 255 0 0 1"/>
+</MRML>
+)");
+    CHECK(isTfFile(file));
+    CHECK(tfNamesIn(file) == std::vector<std::string>{"CT-One", "MR #2", "Third"});
+    CHECK(says(openTfFile(file).notices, "the first of 3 presets, 'CT-One'"));
+
+    const ReadTf one = openTfFile(file + "#CT-One");
+    CHECK_FALSE(says(one.notices, "the first of"));
+    CHECK_FALSE(says(one.notices, "opacity by gradient")); // 1 throughout
+    REQUIRE(one.tf.range == ValueRange{-3024, 3000});
+    const auto at = [](const ReadTf& read, double value) {
+        return (value - read.tf.range->lo) / (read.tf.range->hi - read.tf.range->lo);
+    };
+    CHECK(one.tf.opacity(at(one, 90)) == Approx(0.2)); // half way from 60 to 120
+    CHECK(one.tf.opacity(at(one, 2000)) == Approx(0.4));
+    CHECK(one.tf.color(at(one, -12)).r == Approx(0.5)); // half way from −3024 to 3000
+    CHECK(one.tf.color(at(one, -12)).g == Approx(0.25));
+
+    const ReadTf two = openTfFile(file + "#MR #2");
+    REQUIRE(two.tf.range == ValueRange{0, 200});
+    CHECK(two.tf.opacity(at(two, 125)) == Approx(0.4)); // half way from 0.1 to 0.7
+    CHECK(two.tf.color(at(two, 100)).b == Approx(0.6));
+    CHECK(says(two.notices, "opacity by gradient is kept"));
+    // Of 1 mm: of voxels 0.5 mm apart 1 − √0.6.
+    CHECK(forVolume(two, volume(Int3(8), Vec3(0.5))).opacity(at(two, 125)) == Approx(1 - std::sqrt(0.6)).margin(0.002));
+    const std::string again = writtenTf(slicerXmlFormat(), {two.tf, {}, {}, "again"}).text;
+    CHECK_THAT(again, Contains("gradientOpacity=\"6 0 0 10 0.5 80 1\"") && Contains("ambient=\"0.3\"") &&
+                          Contains("interpolation=\"0\"") && Contains("shade=\"0\""));
+
+    const ReadTf third = openTfFile(file + "#Third");
+    CHECK(third.tf.opacity(at(third, 99.9)) == Approx(0).margin(1e-9));
+    CHECK(third.tf.opacity(at(third, 100)) == 0.5);
+    CHECK(third.tf.color(at(third, 127.5)).b == Approx(0.5));
+    CHECK_THROWS_WITH(openTfFile(file + "#Fourth"), Contains("CT-One, MR #2, Third"));
+}
+
+TEST_CASE("presets without a name and of the same name are told apart", "[tf][formats]") {
+    const auto preset = [](const std::string& name, int hi) {
+        return R"({"Name": ")" + name + R"(", "RGBPoints": [0, 0, 0, 0, )" + std::to_string(hi) + ", 1, 1, 1]}";
+    };
+    const test::TempFolder folder;
+    const std::string file =
+        folder.write("a#b.json", "[" + preset("a", 10) + ", " + preset("", 20) + ", " + preset("a", 30) + ", " +
+                                     preset("c#d", 40) + R"(, {"Name": "labels", "IndexedColors": [1, 0, 0]}])");
+    CHECK(tfNamesIn(file) == std::vector<std::string>{"a", "preset 2", "a (2)", "c#d", "labels"});
+    CHECK(loadTf(file).range == ValueRange{0, 10});
+    CHECK(loadTf(file + "#a").range == ValueRange{0, 10});
+    CHECK(loadTf(file + "#preset 2").range == ValueRange{0, 20});
+    CHECK(loadTf(file + "#a (2)").range == ValueRange{0, 30});
+    CHECK(loadTf(file + "#c#d").range == ValueRange{0, 40});
+    CHECK(fileOfTf(file + "#c#d") == file);
+    CHECK(fileOfTf(file) == file);
+    CHECK_THROWS_WITH(loadTf(file + "#labels"), Contains("categories"));
+    // One, in whatever format, is no choice.
+    CHECK(tfNamesIn(folder.write("b.json", "[" + preset("a", 10) + "]")).empty());
+    CHECK(tfNamesIn(folder.write("c.vp", writtenTf(slicerVpFormat(), {sample(), {}, {}, ""}).text)).empty());
+    const std::string maps = folder.write("d.xml", R"(<ColorMaps><ColorMap name="x" space="RGB">
+        <Point x="1" o="0" r="1" g="0" b="0"/><Point x="2" o="0.5" r="0" g="1" b="0"/></ColorMap>
+        <ColorMap name="y" space="RGB"><Point x="3" o="0" r="1" g="0" b="0"/><Point x="5" o="0.5" r="0" g="1" b="0"/>
+        </ColorMap></ColorMaps>)");
+    CHECK(tfNamesIn(maps) == std::vector<std::string>{"x", "y"});
+    CHECK(loadTf(maps + "#y").range == ValueRange{3, 5});
 }
 
 TEST_CASE("equal positions of 3D Slicer are a step", "[tf][formats]") {
@@ -499,4 +629,26 @@ TEST_CASE("snippets have every point, and lists that Python takes", "[tf][format
         CHECK_THAT(text, Contains("(-1000, 1, 0.5, 0, 0),") && Contains("(3000, 1, 1, 1, 0),") &&
                              Contains("unit_distance = 0.5"));
     }
+}
+
+TEST_CASE("lines of Python tell the losses that files tell", "[tf][formats][snippets]") {
+    TransferFunction tf = tents(3);
+    tf.points.front().opacity = 5e-5; // which VTK takes for 0
+    for (const TfSnippet& snippet : tfSnippets()) {
+        INFO(snippet.name);
+        const std::vector<std::string> losses = writtenTf(snippet, {tf, {}, {}, ""}).losses;
+        CHECK(says(losses, "3 features are not stored"));
+        CHECK(says(losses, "no data range is known"));
+        CHECK(says(losses, "no volume is known"));
+        CHECK(says(losses, "of at most 0.0001") == (std::string(snippet.name) != "napari"));
+        const std::vector<std::string> placed =
+            writtenTf(snippet, {tf, ValueRange{0, 9}, volume(Int3(10), Vec3(1)), ""}).losses;
+        CHECK_FALSE(says(placed, "is known"));
+    }
+}
+
+TEST_CASE("formats are told in sentences", "[tf][formats]") {
+    const test::TempFolder folder;
+    CHECK_THROWS_WITH(openTfFile(folder.write("e.bin", "what is this?")),
+                      Contains("a preset of vtk.js, a table (CSV), a transfer function of ImageVis3D"));
 }

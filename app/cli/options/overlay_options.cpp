@@ -63,7 +63,7 @@ std::vector<std::string> OverlayOptions::convertTf(Scene& scene) const {
         dressOverlay(*dressed, *scene.session.overlay);
         scene.overlay = std::move(dressed);
     }
-    return openingNotices(read, geometry);
+    return openingNotices(read, geometry, scene.overlay->volume->range());
 }
 
 } // namespace pellucid::cli

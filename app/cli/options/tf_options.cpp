@@ -92,7 +92,7 @@ void TfOptions::applyTo(SceneInputs& inputs) const {
 
 void TfOptions::takePartsInto(Scene& scene, const MemoryUse& then, const JobControl& job) const {
     if (!parts) return;
-    const TransferFunction other = forVolume(readTfNamed(*spec), scene.data->geometry());
+    const TransferFunction other = forVolume(readTfNamed(*spec), *scene.data);
     Session session = scene.session;
     takeTfParts(session, other, *parts, scene.volume->range());
     const Camera camera = scene.camera;

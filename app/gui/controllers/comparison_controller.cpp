@@ -7,6 +7,7 @@
 #include "controllers/player_controller.h"
 #include "controllers/refine_controller.h"
 #include "dialogs/ask_file.h"
+#include "dialogs/ask_preset.h"
 #include "image_io/image_file.h"
 #include "report/comparison_files.h"
 #include "services/services.h"
@@ -143,7 +144,7 @@ void ComparisonController::pin() {
 void ComparisonController::compareWithTf(const QString& spec, const QString& name) {
     m_services.attempt(tr("Cannot compare with the transfer function"), [&] {
         const ReadTf read = readTfNamed(spec.toStdString());
-        TransferFunction tf = withoutIdentities(forVolume(read, m_services.scene().data->geometry()));
+        TransferFunction tf = withoutIdentities(forVolume(read, *m_services.scene().data));
         placeAsPublished(m_services.scene().session, *m_services.scene().data, tf);
         ComparedState b = present(name);
         b.tf = std::move(tf);
@@ -469,7 +470,9 @@ void ComparisonController::addChoices(ActionMenu& menu) {
                                 const QStringList paths = askOpenPaths(
                                     m_services.window(), tr("Compare with a transfer function"), "tfFolder",
                                     tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
-                                if (!paths.isEmpty()) compareWithTf(paths.front(), QFileInfo(paths.front()).fileName());
+                                if (paths.isEmpty()) return;
+                                const QString one = askPreset(paths.front(), m_services.window());
+                                if (!one.isEmpty()) compareWithTf(one, nameOfPreset(one));
                             });
     m_actions.session =
         menu.add("compareSessionAction", tr("Sess&ion file…"), {},

@@ -25,6 +25,8 @@ FigureController::FigureController(Services& services)
     : FileWork(
           [](const FigureTask& task, const JobControl& job) { return makeFigure(task, job); },
           [this](const FigureTask& task, const FigureFile& figure) {
+              for (const std::string& notice : figure.notices)
+                  m_services.notices().add({QString::fromStdString(notice)});
               const QString path = QString::fromStdString(task.path);
               m_services.saySaved(
                   path,

@@ -71,7 +71,7 @@ void FilmController::save(const FilmTask& task) {
 void FilmController::sayUnfinished(const FilmTask& task) {
     const auto unfinished = unfinishedFilm(task);
     if (!unfinished || !unfinished->isThisOne || unfinished->pictures == 0) return;
-    const QString text = tr("%1 is not finished: %L2 of its %L3 pictures are drawn.")
+    const QString text = tr("The film %1 is not finished: %L2 of its %L3 pictures are drawn.")
                              .arg(QFileInfo(QString::fromStdString(task.path)).fileName())
                              .arg(unfinished->pictures)
                              .arg(task.shots.size());

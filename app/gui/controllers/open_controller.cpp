@@ -9,6 +9,7 @@
 
 #include "controllers/save_controller.h"
 #include "dialogs/ask_file.h"
+#include "dialogs/ask_preset.h"
 #include "dialogs/raw_dialog.h"
 #include "dialogs/series_choice_dialog.h"
 #include "dialogs/series_dialog.h"
@@ -308,7 +309,7 @@ void OpenController::openTf(const QString& specOrPath) {
     if (specOrPath == kAutomaticTf) return automaticStartWanted();
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const ReadTf read = readTfNamed(specOrPath.toStdString());
-        const TransferFunction tf = forVolume(read, store.scene().data->geometry());
+        const TransferFunction tf = forVolume(read, *store.scene().data);
         const bool isFile = namesTfFile(specOrPath);
         const auto change = [tf, data = store.scene().data](Session& session) {
             TransferFunction placed = tf;
@@ -397,7 +398,7 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
 
 void OpenController::openPath(const QString& path) {
     if (path.startsWith('{')) return openRecent(path); // a recent file that needs more than its path
-    if (isTf(path)) return openTf(path);
+    if (isTf(path)) return askAndOpenTf(path);
     if (isSession(path)) {
         if (m_saving.maybeSave()) openSession(path);
         return;
@@ -425,6 +426,10 @@ void OpenController::openPaths(QStringList paths) {
             }
         }
         if (volumes.isEmpty()) throw UsageError("there are no volumes here", paths.front().toStdString(), "");
+        if (!tf.isEmpty()) {
+            tf = askPreset(tf, m_services.window());
+            if (tf.isEmpty()) return;
+        }
         VolumeSource source = sourceOf(volumes);
         if (askRawLayout(source) && m_saving.maybeSave()) openChosen(source, tf);
     });
@@ -570,7 +575,12 @@ void OpenController::chooseTf() {
                                      tr("Transfer functions (%1 *.json *.xml *.csv);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     keepFolderOf("tfFolder", path);
-    openTf(path);
+    askAndOpenTf(path);
+}
+
+void OpenController::askAndOpenTf(const QString& path) {
+    if (!m_services.isEditable()) return;
+    if (const QString one = askPreset(path, m_services.window()); !one.isEmpty()) openTf(one);
 }
 
 // ---- recent files

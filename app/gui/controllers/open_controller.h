@@ -123,6 +123,7 @@ private:
     QStringList askFiles(const QString& title, const QString& others);
     void chooseRaw();
     void chooseTf();
+    void askAndOpenTf(const QString& path); ///< openTf(), after the question which one is meant where there are several
     void noteWindow(const TransferFunction& tf);
     void addRecent(const QString& entry);
     void openRecent(const QString& entry);

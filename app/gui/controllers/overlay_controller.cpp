@@ -2,6 +2,7 @@
 
 #include "controllers/open_controller.h"
 #include "dialogs/ask_file.h"
+#include "dialogs/ask_preset.h"
 #include "dialogs/series_files.h"
 #include "services/services.h"
 #include "store/edits.h"
@@ -55,17 +56,20 @@ void OverlayController::chooseCurve() {
         tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     keepFolderOf("tfFolder", path);
-    openCurve(path);
+    if (const QString one = askPreset(path, m_services.window()); !one.isEmpty()) openCurve(one);
 }
 
 void OverlayController::openCurve(const QString& path) {
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const ReadTf read = readTfNamed(path.toStdString());
-        const Geometry& geometry = m_services.scene().data->geometry();
+        const Scene& scene = m_services.scene();
+        const Geometry& geometry = scene.data->geometry();
         const TransferFunction curve = forVolume(read, geometry);
         editPart(m_services.store(), &Session::overlay, tr("Transfer function of the overlay"), {},
                  [&](OverlayView& o) { o.curve = curve; });
-        for (const std::string& notice : openingNotices(read, geometry))
+        const std::optional<ValueRange> values =
+            scene.overlay ? std::optional(scene.overlay->volume->range()) : std::nullopt;
+        for (const std::string& notice : openingNotices(read, geometry, values))
             m_services.notices().add({QString::fromStdString(notice)});
     });
 }

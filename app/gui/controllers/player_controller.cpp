@@ -425,7 +425,8 @@ void PlayerController::reportProblems() {
     for (const auto& [f, problem] : m_broken) {
         if (!m_reported.insert(f).second) continue;
         if (m_reported.size() <= kMostNotices) {
-            m_services.notices().add({tr("%1 is left out: %2 (%3).").arg(label(f), problem.what, problem.where)});
+            m_services.notices().add(
+                {tr("The frame %1 is left out: %2 (%3).").arg(label(f), problem.what, problem.where)});
             continue;
         }
         if (!m_summary.isEmpty()) m_services.notices().remove(m_summary);

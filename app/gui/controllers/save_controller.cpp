@@ -159,8 +159,9 @@ bool SaveController::saveTf(const QString& path) {
     return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the transfer function"), [&] {
         const Scene& scene = m_services.store().committed();
         const bool whole = !isWrittenForOthers(path.toStdString()); // else what another program knows of it
-        const std::vector<std::string> lost = writeTfFile(whole ? *scene.session.tf() : scene.tf, scene.volume->range(),
-                                                          path.toStdString(), scene.volume->geometry());
+        const std::vector<std::string> lost =
+            writeTfFile(whole ? *scene.session.tf() : scene.tf, scene.volume->range(), path.toStdString(),
+                        scene.volume->geometry(), scene.volume->dataRange());
         for (const std::string& loss : lost) m_services.notices().add({QString::fromStdString(loss)});
         if (whole) {
             setTfPath(path);

@@ -30,7 +30,7 @@ ShareController::~ShareController() = default;
 void ShareController::addActions() {
     ActionMenu menu(m_services.actions(), tr("&File"), [this] { return m_services.store().hasVolume(); });
     menu.add("shareAction", tr("Share as &web page…"), {},
-             tr("One HTML file with the volume, which can be turned in any browser, without a network"),
+             tr("One HTML file with the volume, which can be turned in a browser, without a network"),
              [this] { choose(); });
 }
 

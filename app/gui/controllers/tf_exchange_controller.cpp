@@ -6,9 +6,11 @@
 #include "base/atomic_file.h"
 #include "controllers/open_controller.h"
 #include "dialogs/ask_file.h"
+#include "dialogs/ask_preset.h"
 #include "dialogs/export_tf_dialog.h"
 #include "dialogs/tf_parts_dialog.h"
 #include "services/services.h"
+#include "session/scene_data.h"
 #include "session/variable_edits.h"
 #include "store/edits.h"
 #include "tf/formats/tf_file.h"
@@ -44,7 +46,8 @@ void TfExchangeController::addActions() {
 
 TfToWrite TfExchangeController::present(const QString& name) const {
     const Scene& scene = m_services.scene();
-    return {scene.tf, scene.volume->range(), scene.volume->geometry(), name.toStdString()};
+    const Volume& volume = *scene.volume;
+    return {scene.tf, volume.range(), volume.geometry(), name.toStdString(), volume.dataRange()};
 }
 
 QStringList TfExchangeController::lossesOf(const TfFormat& format) const {
@@ -80,9 +83,10 @@ void TfExchangeController::chooseExport() {
 void TfExchangeController::copySnippet(const QString& name) {
     for (const TfSnippet& snippet : tfSnippets())
         if (name == snippet.name) {
-            QApplication::clipboard()->setText(QString::fromStdString(snippet.text(present({}))));
-            Q_EMIT m_services.message(
-                tr("Copied: paste it into the Python console of %1").arg(QString::fromUtf8(snippet.title)));
+            const WrittenTf written = writtenTf(snippet, present({}));
+            QApplication::clipboard()->setText(QString::fromStdString(written.text));
+            for (const std::string& loss : written.losses) m_services.notices().add({QString::fromStdString(loss)});
+            Q_EMIT m_services.message(tr("Copied: paste it into %1").arg(QString::fromUtf8(snippet.console)));
         }
 }
 
@@ -90,7 +94,7 @@ void TfExchangeController::openParts(const QString& path, const TfParts& parts) 
     if (!m_services.isEditable()) return;
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const Scene& scene = m_services.scene();
-        const TransferFunction other = forVolume(openTfFile(path.toStdString()), scene.data->geometry());
+        const TransferFunction other = forVolume(openTfFile(path.toStdString()), *scene.data);
         m_opening.editData(tr("Open parts of a transfer function"),
                            [other, parts, window = scene.volume->range()](Session& session) {
                                takeTfParts(session, other, parts, window);
@@ -104,12 +108,16 @@ void TfExchangeController::chooseParts() {
         tr("Transfer functions (%1 *.json *.xml *.csv);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     keepFolderOf("tfFolder", path);
+    if (const QString one = askPreset(path, m_services.window()); !one.isEmpty()) chooseParts(one);
+}
+
+void TfExchangeController::chooseParts(const QString& path) {
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const ReadTf read = openTfFile(path.toStdString());
         QStringList notices;
-        for (const std::string& notice : openingNotices(read, m_services.scene().data->geometry()))
+        for (const std::string& notice : openingNoticesIn(m_services.scene(), read))
             notices << QString::fromStdString(notice);
-        TfPartsDialog dialog(QFileInfo(path).fileName(), {read.hasColors, read.hasOpacities, read.tf.range.has_value()},
+        TfPartsDialog dialog(nameOfPreset(path), {read.hasColors, read.hasOpacities, read.tf.range.has_value()},
                              notices, m_services.window());
         if (dialog.exec() == QDialog::Accepted) openParts(path, dialog.parts());
     });

@@ -32,6 +32,7 @@ private:
     TfToWrite present(const QString& name) const;
     void chooseExport();
     void chooseParts();
+    void chooseParts(const QString& path);
 
     Services& m_services;
     OpenController& m_opening;

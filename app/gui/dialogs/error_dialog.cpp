@@ -6,17 +6,10 @@
 #include "dialogs/closing_buttons.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
+#include "widgets/sentence.h"
 
 namespace pellucid::gui {
 namespace {
-
-QString asSentence(QString text) {
-    text = text.trimmed();
-    if (text.isEmpty()) return text;
-    text[0] = text[0].toUpper();
-    if (!text.endsWith('.') && !text.endsWith('?')) text += '.';
-    return text;
-}
 
 QLabel* selectable(const QString& text, const char* name, QWidget* parent) {
     QLabel* label = wrappedLabel(name, parent);

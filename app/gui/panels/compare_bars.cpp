@@ -18,6 +18,7 @@ constexpr double kPale = 0.45; // of figures of an older state
 constexpr int kBar = 10;
 
 QString percent(double value) { return QObject::tr("%1 %").arg(100 * value, 0, 'f', 1); }
+QString percent(const std::optional<double>& value) { return value ? percent(*value) : QStringLiteral("–"); }
 QString signedPercent(double value) {
     const QString sign = value > 0 ? QStringLiteral("+") : value < 0 ? QString(QChar(0x2212)) : QString();
     return sign + QObject::tr("%1 points").arg(100 * std::abs(value), 0, 'f', 1);
@@ -34,7 +35,7 @@ QString nameOf(const ComparedFigure& figure) {
     return words.left(1).toUpper() + words.mid(1);
 }
 
-CompareBars::CompareBars(QWidget* parent) : QWidget(parent) {
+CompareBars::CompareBars(QWidget* parent) : QWidget(parent), Spoken(*this, QAccessible::Chart) {
     setObjectName("compareBars");
     setAccessibleName(tr("Figures of A and B"));
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
@@ -124,8 +125,7 @@ void CompareBars::paintRow(QPainter& painter, std::size_t row) const {
         painter.setPen(theme::kFaint);
         painter.drawText(around.adjusted(kGap, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter, isB ? "B" : "A");
         painter.setPen(text);
-        painter.drawText(around.adjusted(0, 0, -kGap, 0), Qt::AlignRight | Qt::AlignVCenter,
-                         value ? percent(*value) : QStringLiteral("–"));
+        painter.drawText(around.adjusted(0, 0, -kGap, 0), Qt::AlignRight | Qt::AlignVCenter, percent(value));
         painter.setPen(Qt::NoPen);
         painter.setBrush(theme::kTrack);
         painter.drawRoundedRect(track, 2, 2);
@@ -136,6 +136,16 @@ void CompareBars::paintRow(QPainter& painter, std::size_t row) const {
     }
 }
 
+QString CompareBars::spokenValue() const {
+    if (m_pairs.empty()) return tr("Nothing is compared");
+    QStringList parts;
+    const std::vector<Values> all = values();
+    for (std::size_t row = 0; row < all.size(); ++row)
+        parts << tr("%1: A %2, B %3")
+                     .arg(QString::fromStdString(m_pairs[row].name), percent(all[row].a), percent(all[row].b));
+    return tr("%1 – %2").arg(nameOf(comparedFigures()[m_figure]), parts.join("; "));
+}
+
 bool CompareBars::event(QEvent* event) {
     const bool shown = showsTip(*event, *this, [this](const QPoint& at) -> QString {
         const auto row = static_cast<std::size_t>(at.y() / rowHeight());
@@ -143,8 +153,7 @@ bool CompareBars::event(QEvent* event) {
         QStringList lines{QString::fromStdString(m_pairs[row].name)};
         for (const ComparedFigure& figure : comparedFigures()) {
             const auto text = [&](const std::optional<FeatureFigures>& of) {
-                const auto value = of ? figure.of(*of) : std::optional<double>();
-                return value ? percent(*value) : QStringLiteral("–");
+                return percent(of ? figure.of(*of) : std::optional<double>());
             };
             lines << tr("%1: A %2, B %3").arg(nameOf(figure), text(m_pairs[row].a), text(m_pairs[row].b));
         }

@@ -7,6 +7,7 @@
 #include <QWidget>
 
 #include "session/comparison.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
@@ -14,7 +15,7 @@ namespace pellucid::gui {
 QString nameOf(const ComparedFigure& figure);
 
 /// Per feature the bar of A over that of B, both numbers and their difference. All bars have one scale.
-class CompareBars : public QWidget {
+class CompareBars : public QWidget, public Spoken {
     Q_OBJECT
 public:
     explicit CompareBars(QWidget* parent);
@@ -34,6 +35,7 @@ public:
 
     QSize sizeHint() const override;
     QSize minimumSizeHint() const override;
+    QString spokenValue() const override;
 
 protected:
     void paintEvent(QPaintEvent* event) override;

@@ -55,7 +55,7 @@ QString keyText(const Keyframes& keys, int key) {
     return k.name.empty() ? text : QStringLiteral("%1: %2").arg(text, QString::fromStdString(k.name));
 }
 
-KeyStrip::KeyStrip(QWidget* parent) : QWidget(parent) {
+KeyStrip::KeyStrip(QWidget* parent) : QWidget(parent), Spoken(*this, QAccessible::Slider) {
     setObjectName("keyStrip");
     setAccessibleName(tr("Keyframes along time"));
     setWhatsThis(
@@ -244,10 +244,29 @@ void KeyStrip::paintEvent(QPaintEvent*) {
 QString KeyStrip::tipAt(const QPointF& at) const {
     const int key = keyAt(at);
     if (key < 0) return tr("%1 s").arg(secondsText(timeAt(at.x())));
-    const Keyframe& k = m_keys[static_cast<std::size_t>(key)];
-    QString text = keyText(m_keys, key);
-    if (key + 1 < static_cast<int>(m_keys.size())) text += "\n" + tr("to the next key: %1").arg(easingText(k.easing));
-    return text;
+    return wordsOf(key).join('\n');
+}
+
+QStringList KeyStrip::wordsOf(int key) const {
+    QStringList words{keyText(m_keys, key)};
+    if (key + 1 < static_cast<int>(m_keys.size()))
+        words << tr("to the next key: %1").arg(easingText(m_keys[static_cast<std::size_t>(key)].easing));
+    return words;
+}
+
+QString KeyStrip::spokenValue() const {
+    const int count = static_cast<int>(m_keys.size());
+    QStringList parts{count == 0   ? tr("no keys yet")
+                      : count == 1 ? tr("1 key")
+                                   : tr("%1 keys").arg(count),
+                      tr("playhead at %1 s").arg(secondsText(m_playhead))};
+    if (m_selected >= 0 && m_selected < count) parts << tr("selected: %1").arg(wordsOf(m_selected).join(", "));
+    return parts.join("; ");
+}
+
+std::optional<SpokenNumber> KeyStrip::spokenNumber() {
+    if (!m_editable || m_keys.empty()) return {};
+    return SpokenNumber{m_playhead, 0, m_span, kStep, [this](double time) { Q_EMIT stepWanted(time - m_playhead); }};
 }
 
 bool KeyStrip::event(QEvent* event) {

@@ -8,6 +8,7 @@
 #include <QWidget>
 
 #include "session/keyframes.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
@@ -15,7 +16,7 @@ namespace pellucid::gui {
 /// picture of each key at its time, and as many between two keys as there is room for. A press or drag on the scale, or
 /// between keys, moves the playhead; a click on a key selects it, a drag moves it. The strip changes nothing itself: it
 /// says what is wanted.
-class KeyStrip : public QWidget {
+class KeyStrip : public QWidget, public Spoken {
     Q_OBJECT
 public:
     /// A place for a picture.
@@ -43,6 +44,8 @@ public:
 
     QSize sizeHint() const override { return {600, 104}; }
     QSize minimumSizeHint() const override { return {200, 64}; }
+    QString spokenValue() const override;
+    std::optional<SpokenNumber> spokenNumber() override;
 
 Q_SIGNALS:
     void picturesWanted(); ///< there are places without a picture
@@ -75,6 +78,7 @@ private:
     void place();
     int keyAt(const QPointF& at) const; ///< −1: none
     QString tipAt(const QPointF& at) const;
+    QStringList wordsOf(int key) const;
     void paintScale(QPainter& painter) const;
     void paintPicture(QPainter& painter, const Slot& slot) const;
 

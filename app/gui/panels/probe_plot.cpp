@@ -21,7 +21,9 @@ constexpr int kRow = 22, kStrip = 6;
 
 QString unitOf(const Scene& scene) { return QLatin1String(lengthUnit(scene.volume->geometry())); }
 
+/// −1: of what is in none.
 QString nameOf(const ProbeController& probe, int feature) {
+    if (feature < 0) return QObject::tr("in no feature");
     return QString::fromStdString(probe.tf().features[static_cast<std::size_t>(feature)].name);
 }
 
@@ -30,7 +32,7 @@ QString percentText(double share) { return QStringLiteral("%1 %").arg(100 * shar
 } // namespace
 
 ProbePlot::ProbePlot(Services& services, ProbeController& probe, QWidget* parent)
-    : QWidget(parent), m_services(services), m_probe(probe) {
+    : QWidget(parent), Spoken(*this, QAccessible::Chart), m_services(services), m_probe(probe) {
     setObjectName("probePlot");
     setAccessibleName(tr("Values and opacity along the ray"));
     setMouseTracking(true);
@@ -102,6 +104,16 @@ void ProbePlot::paintEvent(QPaintEvent*) {
     paintAxes(painter);
 }
 
+QString ProbePlot::spokenValue() const {
+    if (!m_probe.isActive()) return tr("Nothing is probed");
+    QStringList parts;
+    for (const ProbeRun& run : m_probe.ray().runs)
+        parts << tr("%1 from %2 to %3 %4")
+                     .arg(nameOf(m_probe, run.feature), numberText(run.begin, length()), numberText(run.end, length()),
+                          unitOf(m_services.scene()));
+    return (parts << tr("opacity %1").arg(percentText(m_probe.ray().alpha))).join("; ");
+}
+
 /// A column per pixel, as high as the intensity.
 void ProbePlot::paintValues(QPainter& painter) const {
     const QRectF box = plot();
@@ -161,7 +173,7 @@ void ProbePlot::leaveEvent(QEvent*) {
 }
 
 ProbeShares::ProbeShares(Services& services, ProbeController& probe, QWidget* parent)
-    : QWidget(parent), m_services(services), m_probe(probe) {
+    : QWidget(parent), Spoken(*this, QAccessible::Chart), m_services(services), m_probe(probe) {
     setObjectName("probeShares");
     setAccessibleName(tr("Shares of the pixel"));
     setCursor(Qt::PointingHandCursor);
@@ -194,21 +206,23 @@ void ProbeShares::paintEvent(QPaintEvent*) {
         if (row.feature >= 0 && row.feature == m_probe.feature())
             painter.fillRect(box, translucent(palette().color(QPalette::Highlight), 0.3));
         QColor color = palette().color(QPalette::Mid);
-        QString name = tr("in no feature");
-        if (row.feature >= 0) {
-            color = colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(row.feature)].color);
-            name = nameOf(m_probe, row.feature);
-        }
+        if (row.feature >= 0) color = colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(row.feature)].color);
         painter.fillRect(QRect(box.left() + 4, box.top() + 5, 12, kRow - 10), color);
         const int nameWidth = box.width() * 2 / 5 - 22;
         painter.setPen(palette().color(QPalette::Text));
         painter.drawText(QRect(box.left() + 22, box.top(), nameWidth, kRow), Qt::AlignLeft | Qt::AlignVCenter,
-                         fontMetrics().elidedText(name, Qt::ElideRight, nameWidth));
+                         fontMetrics().elidedText(nameOf(m_probe, row.feature), Qt::ElideRight, nameWidth));
         const QRectF bar(box.left() + 26 + nameWidth, box.top() + 6, box.width() - 30 - nameWidth - percent, kRow - 12);
         painter.fillRect(bar, palette().color(QPalette::Base));
         painter.fillRect(QRectF(bar.left(), bar.top(), bar.width() * std::min(1.0, row.share), bar.height()), color);
         painter.drawText(box.adjusted(0, 0, -4, 0), Qt::AlignRight | Qt::AlignVCenter, row.text);
     }
+}
+
+QString ProbeShares::spokenValue() const {
+    QStringList parts;
+    for (const Row& row : rows()) parts << tr("%1: %2").arg(nameOf(m_probe, row.feature), row.text);
+    return parts.isEmpty() ? tr("Nothing is probed") : parts.join("; ");
 }
 
 int ProbeShares::rowAt(const QPoint& point) const {

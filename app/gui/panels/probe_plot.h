@@ -6,6 +6,7 @@
 #include <QWidget>
 
 #include "render/probe.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid {
 struct Scene;
@@ -18,7 +19,7 @@ class Services;
 
 /// Along the ray: values as an area in the colours of the transfer function, the opacity that has accumulated as a line
 /// from 0 to 1, and below which feature it is in. Depth is in world units from where the ray enters.
-class ProbePlot : public QWidget {
+class ProbePlot : public QWidget, public Spoken {
     Q_OBJECT
 public:
     ProbePlot(Services& services, ProbeController& probe, QWidget* parent);
@@ -32,6 +33,7 @@ public:
 
     QSize sizeHint() const override { return {300, 150}; }
     QSize minimumSizeHint() const override { return {200, 120}; }
+    QString spokenValue() const override;
 
 Q_SIGNALS:
     void readOut(const QString& text); ///< under the mouse; empty where it has left
@@ -53,7 +55,7 @@ private:
 };
 
 /// A row per feature that the ray meets: its name, its share of the pixel as a bar and in percent. A click selects it.
-class ProbeShares : public QWidget {
+class ProbeShares : public QWidget, public Spoken {
     Q_OBJECT
 public:
     ProbeShares(Services& services, ProbeController& probe, QWidget* parent);
@@ -68,6 +70,7 @@ public:
 
     QSize sizeHint() const override;
     QSize minimumSizeHint() const override { return {120, sizeHint().height()}; }
+    QString spokenValue() const override;
 
 protected:
     void paintEvent(QPaintEvent* event) override;

@@ -58,6 +58,10 @@ PanelInfo refinePanel() {
             }};
 }
 
+EdgeBars::EdgeBars(QWidget* parent) : QWidget(parent), Spoken(*this, QAccessible::Chart) {
+    setAccessibleName(tr("Weights of the edges"));
+}
+
 void EdgeBars::setBars(std::vector<Bar> bars) {
     m_bars = std::move(bars);
     update();
@@ -116,15 +120,25 @@ bool EdgeBars::event(QEvent* event) {
     return showsTip(*event, *this, [this](const QPoint& at) { return tipAt(at.x()); }) || QWidget::event(event);
 }
 
+QStringList EdgeBars::wordsOf(const Bar& bar) const {
+    QStringList words{bar.text, tr("weight %1").arg(shortNumber(bar.weight))};
+    if (bar.before) words.last() += tr(", before %1").arg(shortNumber(*bar.before));
+    if (!bar.participates) words << tr("both ends are fixed: refinement leaves it out");
+    return words;
+}
+
+QString EdgeBars::spokenValue() const {
+    if (m_bars.empty()) return tr("The curve has no edges");
+    QStringList parts;
+    for (const Bar& bar : m_bars) parts << wordsOf(bar).join(", ");
+    return parts.join("; ");
+}
+
 QString EdgeBars::tipAt(int x) const {
     for (std::size_t i = 0; i < m_bars.size(); ++i) {
         const QRectF r = cell(i);
         if (x < r.left() || x >= r.right()) continue;
-        const Bar& bar = m_bars[i];
-        QString text = tr("%1\nweight %2").arg(bar.text, shortNumber(bar.weight));
-        if (bar.before) text += tr(", before %1").arg(shortNumber(*bar.before));
-        if (!bar.participates) text += tr("\nboth ends are fixed: refinement leaves it out");
-        return text;
+        return wordsOf(m_bars[i]).join('\n');
     }
     return tr("Weight of each edge of the curve: the information −α p ln p between two points.\n"
               "Pale: before the refinement; line: the mean. Heights are square roots");

@@ -12,13 +12,14 @@
 #include "jobs/rest_timer.h"
 #include "widgets/controls.h"
 #include "widgets/plot_view.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
 class Services;
 
 /// One bar per edge of the curve: its weight before the refinement (pale) and now. Heights are square roots.
-class EdgeBars : public QWidget {
+class EdgeBars : public QWidget, public Spoken {
     Q_OBJECT
 public:
     struct Bar {
@@ -28,12 +29,13 @@ public:
         bool participates = true; ///< one of its ends can move
         QString text;             ///< "values −20 to 40"
     };
-    using QWidget::QWidget;
+    explicit EdgeBars(QWidget* parent);
     void setBars(std::vector<Bar> bars);
     const std::vector<Bar>& bars() const { return m_bars; }
 
     QSize sizeHint() const override { return {260, 96}; }
     QSize minimumSizeHint() const override { return {120, 80}; }
+    QString spokenValue() const override;
 
 protected:
     void paintEvent(QPaintEvent* event) override;
@@ -42,6 +44,7 @@ protected:
 private:
     QRectF cell(std::size_t i) const;
     QString tipAt(int x) const;
+    QStringList wordsOf(const Bar& bar) const;
     std::vector<Bar> m_bars;
 };
 

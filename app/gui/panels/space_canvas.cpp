@@ -21,7 +21,7 @@ constexpr double kReach = 7; // logical pixels from a state of a path
 } // namespace
 
 SpaceCanvas::SpaceCanvas(QWidget* parent)
-    : QWidget(parent), m_renderer(std::make_shared<KeptRenderer>()),
+    : QWidget(parent), Spoken(*this, QAccessible::Chart), m_renderer(std::make_shared<KeptRenderer>()),
       m_job(
           [renderer = m_renderer](const Task& task, const JobControl& job) {
               if (task.volume == nullptr) return qImageFromImage(heatMap(*task.space, task.view));
@@ -116,6 +116,19 @@ void SpaceCanvas::paintEvent(QPaintEvent*) {
     painter.fillRect(text.adjusted(-8, -6, 8, 6), translucent(Qt::black, 0.7));
     painter.setPen(theme::kMark);
     painter.drawText(box, Qt::AlignCenter | Qt::TextWordWrap, m_outdated);
+}
+
+QString SpaceCanvas::spokenValue() const {
+    if (!m_outdated.isEmpty()) return m_outdated;
+    if (m_space == nullptr) return tr("Nothing has been computed yet");
+    QStringList names;
+    for (const std::size_t f : m_space->axes.features) names << QString::fromStdString(m_view.names[f]);
+    const QString along = tr("along the axes the opacities of %1").arg(names.join(", "));
+    return m_view.shown == kObjective
+               ? tr("%1, %2").arg(terms().distance(), along)
+               : tr("%1 on %2, %3")
+                     .arg(terms().attention(),
+                          QString::fromStdString(m_view.names[static_cast<std::size_t>(m_view.shown)]), along);
 }
 
 void SpaceCanvas::resizeEvent(QResizeEvent* event) {

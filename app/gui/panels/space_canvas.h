@@ -9,11 +9,12 @@
 #include "jobs/job.h"
 #include "report/space_picture.h"
 #include "widgets/kept_renderer.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
 /// Drawn by the CPU off this thread; what the mouse does is of the picture that is seen.
-class SpaceCanvas : public QWidget {
+class SpaceCanvas : public QWidget, public Spoken {
     Q_OBJECT
 public:
     explicit SpaceCanvas(QWidget* parent = nullptr);
@@ -30,6 +31,7 @@ public:
     bool isComplete() const { return m_space == m_drawnSpace && !m_job.isRunning(); }
     QSize sizeHint() const override { return {340, 320}; }
     QSize minimumSizeHint() const override { return {160, 160}; }
+    QString spokenValue() const override;
 
 Q_SIGNALS:
     /// Of the place below the mouse; empty: there is none.

@@ -29,6 +29,7 @@ constexpr double kName = 100, kNameLine = 17;           // its width left of the
 constexpr double kSwatch = 10, kSwatchLeft = 10, kNameLeft = 26;
 constexpr int kWide = 340; // narrower widgets have the names above the bars, and others where a name needs it
 constexpr double kVisibilityBar = 6;
+constexpr double kStep = 0.01, kFarStep = 0.1; // of targets, by keys
 
 QString share(double value) { return QString::number(value, 'f', 3); }
 
@@ -61,7 +62,7 @@ std::optional<double> shareFromText(const QString& text) {
 }
 
 TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
-    : QWidget(parent), m_store(store), m_results(results),
+    : QWidget(parent), Spoken(*this, QAccessible::Slider), m_store(store), m_results(results),
       m_box(named(new QLineEdit(this), "targetBox",
                   tr("Share of attention from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"))) {
     setObjectName("targetBars");
@@ -325,7 +326,7 @@ void TargetBars::leaveEvent(QEvent*) {
 
 void TargetBars::keyPressEvent(QKeyEvent* event) {
     if (count() == 0) return QWidget::keyPressEvent(event);
-    const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 0.1 : 0.01;
+    const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? kFarStep : kStep;
     const double target = m_store.scene().targets().at(static_cast<std::size_t>(m_current));
     const auto move = [&](double by) {
         if (canEdit(m_current))
@@ -390,6 +391,34 @@ QString TargetBars::tip(int feature) const {
               "Thin bar: seen, the share of the picture that the feature makes up (visibility, 0 to 1)\n"
               "Handle: the attention that Optimize aims at; the targets add up to 1.\n"
               "Drag it, press Left and Right (Shift: larger steps), or type it: double click, Enter, a digit");
+}
+
+QString TargetBars::spokenValue() const {
+    if (count() == 0) return tr("The curve has no features");
+    const auto f = static_cast<std::size_t>(m_current);
+    QStringList parts;
+    if (const Measures* m = m_results.measures(); m && f < m->features.size())
+        parts << (m_results.vwsIsCurrent() ? tr("%1 of the attention now")
+                                           : tr("%1 of the attention before the change"))
+                     .arg(share(m->features[f].vws))
+              << tr("%1 of what is seen").arg(share(m->features[f].visibility));
+    if (hasTarget(m_current))
+        parts << tr("target %1").arg(share(m_store.scene().targets()[f]));
+    else
+        parts << (isHidden(m_current) ? tr("hidden") : tr("empty"));
+    if (hasTarget(m_current) && isLocked(m_current)) parts << tr("locked");
+    return tr("%1: %2; feature %3 of %4")
+        .arg(QString::fromStdString(m_store.scene().tf.features[f].name), parts.join(", "))
+        .arg(m_current + 1)
+        .arg(count());
+}
+
+std::optional<SpokenNumber> TargetBars::spokenNumber() {
+    if (!canEdit(m_current)) return {};
+    return SpokenNumber{
+        .now = m_store.scene().targets()[static_cast<std::size_t>(m_current)],
+        .step = kStep,
+        .set = [this](double target) { editTarget(m_store, m_current, target, tr("Target of feature")); }};
 }
 
 void TargetBars::paintEvent(QPaintEvent*) {

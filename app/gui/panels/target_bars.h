@@ -7,6 +7,7 @@
 
 #include "services/results.h"
 #include "store/session_store.h"
+#include "widgets/spoken_value.h"
 
 class QLineEdit;
 
@@ -19,7 +20,7 @@ std::optional<double> shareFromText(const QString& text);
 /// visibility, with numbers; a handle at its target that is dragged, moved by keys (Up/Down choose the feature,
 /// Left/Right change its target) or typed (double click on the number, Enter, a digit); and a lock (L) that holds the
 /// target where others are set.
-class TargetBars : public QWidget {
+class TargetBars : public QWidget, public Spoken {
     Q_OBJECT
 public:
     TargetBars(SessionStore& store, Results& results, QWidget* parent = nullptr);
@@ -41,6 +42,8 @@ public:
 
     QSize sizeHint() const override;
     QSize minimumSizeHint() const override;
+    QString spokenValue() const override;
+    std::optional<SpokenNumber> spokenNumber() override;
 
 Q_SIGNALS:
     void currentChanged(int feature); ///< by mouse or keys

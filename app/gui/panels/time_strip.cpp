@@ -19,7 +19,7 @@ constexpr double kMargin = 6, kMarks = 13, kHeld = 3; // pixels: at the sides, t
 
 } // namespace
 
-TimeStrip::TimeStrip(QWidget* parent) : QWidget(parent) {
+TimeStrip::TimeStrip(QWidget* parent) : QWidget(parent), Spoken(*this, QAccessible::Slider) {
     setObjectName("timeStrip");
     setAccessibleName(tr("Time histogram"));
     setWhatsThis(
@@ -174,13 +174,35 @@ QString TimeStrip::tipAt(const QPointF& at) const {
     } else if (counts.empty() && mark.problem.isEmpty()) {
         lines << tr("not read yet");
     }
+    return (lines << marksOf(f)).join('\n');
+}
+
+QStringList TimeStrip::marksOf(int frame) const {
+    const FrameMark& mark = m_marks[static_cast<std::size_t>(frame)];
+    QStringList lines;
     if (!mark.problem.isEmpty()) lines << tr("left out: %1").arg(mark.problem);
     if (mark.tfKey) lines << tr("key: a transfer function made by hand");
     if (mark.targetKey) lines << tr("key: targets of its own");
     if (mark.adapted)
         lines << (mark.stale ? tr("its transfer function is out of date and will be recomputed")
                              : tr("a transfer function was made for it"));
-    return lines.join('\n');
+    return lines;
+}
+
+QString TimeStrip::spokenValue() const {
+    if (m_frame >= count()) return tr("There is no series");
+    QStringList parts{tr("frame %L1 of %L2, %3")
+                          .arg(m_frame + 1)
+                          .arg(count())
+                          .arg(QString::fromStdString(m_series->listing().label(m_frame)))};
+    if (m_awaited) parts << tr("frame %L1 is awaited").arg(*m_awaited + 1);
+    return (parts << marksOf(m_frame)).join("; ");
+}
+
+std::optional<SpokenNumber> TimeStrip::spokenNumber() {
+    if (count() == 0) return {};
+    return SpokenNumber{m_frame + 1.0, 1, static_cast<double>(count()), 1,
+                        [this](double frame) { Q_EMIT frameWanted(static_cast<int>(std::lround(frame)) - 1); }};
 }
 
 bool TimeStrip::event(QEvent* event) {

@@ -9,6 +9,7 @@
 #include <QWidget>
 
 #include "volume/time_series.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
@@ -24,7 +25,7 @@ struct FrameMark {
 
 /// Frames from left to right, intensities from below (0) to above (1); how many voxels of a frame have an intensity is
 /// told by brightness, logarithmically. Frames that are not known yet are empty. A press or drag asks for a frame.
-class TimeStrip : public QWidget {
+class TimeStrip : public QWidget, public Spoken {
     Q_OBJECT
 public:
     explicit TimeStrip(QWidget* parent = nullptr);
@@ -41,6 +42,8 @@ public:
 
     QSize sizeHint() const override { return {600, 84}; }
     QSize minimumSizeHint() const override { return {160, 48}; }
+    QString spokenValue() const override;
+    std::optional<SpokenNumber> spokenNumber() override;
 
 Q_SIGNALS:
     void frameWanted(int frame);
@@ -61,6 +64,7 @@ private:
     int count() const { return m_series ? m_series->size() : 0; }
     void draw();
     QString tipAt(const QPointF& at) const;
+    QStringList marksOf(int frame) const; ///< in words
     void paintState(QPainter& painter, int frame) const;
     void paintKeys(QPainter& painter, int frame) const;
 

@@ -8,6 +8,7 @@
 #include "panels/panel.h"
 #include "render/view_direction.h"
 #include "services/services.h"
+#include "view/camera_hand.h"
 #include "view/view_globe.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
@@ -18,13 +19,6 @@ namespace pellucid::gui {
 namespace {
 
 constexpr double kDegreesPerRadius = 60; ///< of a drag on the sphere: about what the surface under the mouse turns by
-
-QString degrees(double value) { return QString::number(value, 'f', 0).replace('-', QChar(0x2212)) + QChar(0x00b0); }
-
-QString anglesText(const Vec3& towardEye) {
-    const ViewAngles angles = anglesOf(towardEye);
-    return QObject::tr("azimuth %1, elevation %2").arg(degrees(angles.azimuth), degrees(angles.elevation));
-}
 
 /// `about`: of the map, which is of a coarser copy of the volume.
 QString figureText(const ViewMetric& metric, double value, bool about) {
@@ -103,9 +97,9 @@ ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget
     });
     m_globe->setWords([this](const Vec3& toward) {
         const ViewSearchController& views = m_search;
-        if (views.map().isEmpty()) return anglesText(toward);
+        if (views.map().isEmpty()) return anglesText(anglesOf(toward));
         const QString figure = figureText(views.map().metric, views.map().interpolated(toward), true);
-        return tr("From %1: %2").arg(anglesText(toward), figure) +
+        return tr("From %1: %2").arg(anglesText(anglesOf(toward)), figure) +
                (views.isCurrent() ? QString() : tr("\nin an earlier state"));
     });
     connect(&search, &ViewSearchController::changed, this, &ViewsPanel::refresh);
@@ -152,7 +146,7 @@ QString ViewsPanel::words() const {
     std::optional<double> here = measuredHere(metric);
     if (camera == best.best.camera) here = best.best.value;
     return tr("Best: %1, %2. From here: %3.")
-        .arg(anglesText(-best.best.camera.forward()), figureText(metric, best.best.value, false),
+        .arg(anglesText(anglesOf(-best.best.camera.forward())), figureText(metric, best.best.value, false),
              here ? figureText(metric, *here, false)
                   : figureText(metric, search.map().interpolated(-camera.forward()), true));
 }

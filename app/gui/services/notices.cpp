@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "widgets/sentence.h"
+
 namespace pellucid::gui {
 
 void Notices::add(Notice notice) {
+    notice.text = asSentence(notice.text);
     const bool known = std::any_of(m_all.begin(), m_all.end(), [&](const Notice& n) { return n.text == notice.text; });
     if (known) return;
     m_all.push_back(std::move(notice));
@@ -12,7 +15,8 @@ void Notices::add(Notice notice) {
 }
 
 void Notices::remove(const QString& text) {
-    if (std::erase_if(m_all, [&](const Notice& n) { return n.text == text; }) > 0) Q_EMIT changed();
+    if (std::erase_if(m_all, [said = asSentence(text)](const Notice& n) { return n.text == said; }) > 0)
+        Q_EMIT changed();
 }
 
 void Notices::clear() {

@@ -14,13 +14,15 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kTop = 4;  // of the colours, pixels; the marker's head is above
-constexpr double kHead = 5; // half the width of the marker's head
+constexpr double kTop = 4;                                  // of the colours, pixels; the marker's head is above
+constexpr double kHead = 5;                                 // half the width of the marker's head
+constexpr double kStep = 1.0 / 128, kFineStep = 1.0 / 1024; // of the whole, by keys
 
 } // namespace
 
 PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas)
-    : QWidget(&canvas), m_services(services), m_refining(refining), m_canvas(canvas) {
+    : QWidget(&canvas), Spoken(*this, QAccessible::Slider), m_services(services), m_refining(refining),
+      m_canvas(canvas) {
     setObjectName("paletteBar");
     setAccessibleName(tr("Palette"));
     setWhatsThis(
@@ -154,7 +156,7 @@ void PaletteBar::keyPressEvent(QKeyEvent* event) {
         return m_refining.cancelDrag();
     }
     if (!m_services.isEditable() || m_dragging) return QWidget::keyPressEvent(event);
-    const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 1.0 / 1024 : 1.0 / 128;
+    const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? kFineStep : kStep;
     const auto go = [&](double x) { m_refining.prioritize(std::clamp(x, 0.0, 1.0), QStringLiteral("palette-keys")); };
     const double middle = m_canvas.axis().middle();
     switch (event->key()) {
@@ -182,11 +184,25 @@ void PaletteBar::leaveEvent(QEvent*) {
     update();
 }
 
+QString PaletteBar::spokenValue() const {
+    return m_services.store().hasVolume() && marked() ? tr("Prioritized: value %1").arg(valueText(*marked()))
+                                                      : tr("No value is prioritized");
+}
+
+std::optional<SpokenNumber> PaletteBar::spokenNumber() {
+    if (!m_services.isEditable() || !m_services.store().hasVolume() || !marked()) return {};
+    const Volume& volume = *m_services.scene().volume;
+    const ValueRange range = volume.range();
+    return SpokenNumber{
+        volume.valueOfIntensity(*marked()), range.lo, range.hi, kStep * (range.hi - range.lo),
+        [this](double value) { m_refining.prioritize(m_services.scene().volume->intensityOfValue(value)); }};
+}
+
 bool PaletteBar::event(QEvent* event) {
     const auto tip = [this](const QPoint& position) {
         QString text = tr("Value %1. Click: refine so that this value stands out; drag: the picture follows")
                            .arg(valueText(intensityAt(QPointF(position))));
-        if (marked()) text += tr("\nPrioritized: value %1; Esc: nothing").arg(valueText(*marked()));
+        if (marked()) text += "\n" + spokenValue() + tr("; Esc: nothing");
         return text;
     };
     return (m_services.store().hasVolume() && showsTip(*event, *this, tip)) || QWidget::event(event);

@@ -6,6 +6,7 @@
 #include <QWidget>
 
 #include "tf/tf_canvas.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
@@ -14,7 +15,7 @@ class Services;
 
 /// A click refines for the intensity under the mouse (thesis 3.4.3), a drag goes on doing so. The marker shows what is
 /// prioritized.
-class PaletteBar : public QWidget {
+class PaletteBar : public QWidget, public Spoken {
     Q_OBJECT
 public:
     /// Lies in the canvas, in its strip(), and follows its axis.
@@ -22,6 +23,8 @@ public:
 
     /// The middle of the place of an intensity, widget pixels.
     QPointF positionOf(double intensity) const;
+    QString spokenValue() const override;
+    std::optional<SpokenNumber> spokenNumber() override;
 
 protected:
     void paintEvent(QPaintEvent* event) override;

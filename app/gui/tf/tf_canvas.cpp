@@ -33,7 +33,7 @@ constexpr double kNotch = 120;     // of QWheelEvent::angleDelta()
 } // namespace
 
 TfCanvas::TfCanvas(SessionStore& store, Results& results, Selection& selection, QWidget* parent)
-    : QWidget(parent), m_store(store), m_results(results), m_selection(selection) {
+    : QWidget(parent), Spoken(*this, QAccessible::Chart), m_store(store), m_results(results), m_selection(selection) {
     setObjectName("tfCanvas");
     setAccessibleName(tr("Transfer function"));
     setWhatsThis(tr("The curve of opacity over the values, in its colours, with the histogram behind it. Drag points, "
@@ -640,12 +640,34 @@ QString TfCanvas::readout() const {
     return parts.join(QStringLiteral("  ·  "));
 }
 
+QString TfCanvas::pointText(int index) const {
+    const ControlPoint& p = point(index);
+    return tr("value %1, opacity %2%3")
+        .arg(valueText(p.x), QString::number(p.opacity, 'g', 4), p.fixed ? tr(", fixed") : QString());
+}
+
+QString TfCanvas::spokenValue() const {
+    if (!m_store.hasVolume()) return tr("No volume is open");
+    const std::size_t count = tf().points.size();
+    QStringList parts{count == 1 ? tr("1 point") : tr("%1 points").arg(count)};
+    const int current = m_points.current();
+    if (current >= 0) {
+        if (m_points.size() > 1) parts << tr("%1 of them selected").arg(m_points.size());
+        parts << tr("point %1 selected: %2").arg(current + 1).arg(pointText(current));
+        if (const int here = featureAt(tf().features, point(current).x); here >= 0)
+            parts << tr("in the feature %1").arg(QString::fromStdString(feature(here).name));
+    } else {
+        parts << tr("none selected");
+    }
+    if (!m_axis.isWhole()) parts << tr("shown from %1 to %2").arg(valueText(m_axis.lo()), valueText(m_axis.hi()));
+    return parts.join("; ");
+}
+
 QString TfCanvas::toolTipAt(const QPointF& position) const {
     if (const int index = pointAt(position); index >= 0) {
-        const ControlPoint& p = point(index);
-        return tr("value %1, opacity %2%3\nopacity of a path one voxel long (d0)\n"
-                  "Shift: along one axis; Ctrl: a tenth as fast; Ctrl+click: select several")
-            .arg(valueText(p.x), QString::number(p.opacity, 'g', 4), p.fixed ? tr(", fixed") : QString());
+        return pointText(index) + "\n" +
+               tr("opacity of a path one voxel long (d0)\n"
+                  "Shift: along one axis; Ctrl: a tenth as fast; Ctrl+click: select several");
     }
     if (const std::optional<BarHit> bar = barAt(position)) {
         const Feature& f = feature(bar->feature);

@@ -17,6 +17,7 @@
 #include "tf/point_selection.h"
 #include "tf/volume_counts.h"
 #include "widgets/opacity_axis.h"
+#include "widgets/spoken_value.h"
 
 class QMenu;
 
@@ -34,7 +35,7 @@ inline constexpr double kOverview = 4;      ///< of the bar that shows which par
 } // namespace layout
 
 /// Every finished drag is one undo step; while the mouse is down the store previews.
-class TfCanvas : public QWidget {
+class TfCanvas : public QWidget, public Spoken {
     Q_OBJECT
 public:
     TfCanvas(SessionStore& store, Results& results, Selection& selection, QWidget* parent = nullptr);
@@ -75,6 +76,7 @@ public:
 
     QSize sizeHint() const override { return {640, 180}; }
     QSize minimumSizeHint() const override { return {300, 110}; }
+    QString spokenValue() const override;
 
 Q_SIGNALS:
     void arranged(); ///< plot() and strip() may be others
@@ -129,6 +131,7 @@ private:
     int pointAt(const QPointF& position) const;               ///< −1: none
     std::optional<BarHit> barAt(const QPointF& position) const;
     QString valueText(double x) const; ///< with its unit
+    QString pointText(int index) const;
     QString toolTipAt(const QPointF& position) const;
     SeenBins seenHistogram() const;
     void follow(const Scene& before, const Scene& after);

@@ -136,4 +136,17 @@ bool CameraHand::key(int key) {
     }
 }
 
+QString anglesText(const ViewAngles& angles) {
+    const auto degrees = [](double value) {
+        return QString::number(value, 'f', 0).replace('-', QChar(0x2212)) + QChar(0x00b0);
+    };
+    return QObject::tr("azimuth %1, elevation %2").arg(degrees(angles.azimuth), degrees(angles.elevation));
+}
+
+QString viewText(const Camera& camera, const Geometry& geometry) {
+    const ViewAngles angles = viewAngles(camera, geometry);
+    return QObject::tr("seen from %1, magnified %2 times")
+        .arg(anglesText(angles), QString::number(angles.zoom, 'g', 2));
+}
+
 } // namespace pellucid::gui

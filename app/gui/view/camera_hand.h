@@ -6,6 +6,7 @@
 
 #include <QElapsedTimer>
 #include <QPointF>
+#include <QString>
 #include <Qt>
 
 #include "session/scene.h"
@@ -14,6 +15,10 @@
 class QMouseEvent;
 class QWheelEvent;
 class QWidget;
+
+namespace pellucid {
+struct ViewAngles;
+}
 
 namespace pellucid::gui {
 
@@ -52,5 +57,10 @@ private:
     QElapsedTimer m_sinceWheel;
     int m_wheelGesture = 0;
 };
+
+/// Of a direction: "azimuth 30°, elevation −10°".
+QString anglesText(const ViewAngles& angles);
+/// "seen from azimuth 30°, elevation −10°, magnified 1.2 times".
+QString viewText(const Camera& camera, const Geometry& geometry);
 
 } // namespace pellucid::gui

@@ -14,6 +14,13 @@
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
+namespace {
+
+QString nameOfB(const ComparisonController& comparing) {
+    return ComparedView::tr("B: %1").arg(QString::fromStdString(comparing.view().b->name));
+}
+
+} // namespace
 
 void paintSideName(QPainter& painter, const QRectF& area, const QString& name) {
     constexpr double kMargin = 8, kInset = 7;
@@ -48,7 +55,7 @@ protected:
         QPainter painter(this);
         painter.setRenderHint(QPainter::Antialiasing);
         m_annotations.paint(painter, {*scene, QSizeF(size())});
-        paintSideName(painter, seen, ComparedView::tr("B: %1").arg(QString::fromStdString(m_comparing.view().b->name)));
+        paintSideName(painter, seen, nameOfB(m_comparing));
     }
 
 private:
@@ -57,7 +64,7 @@ private:
 };
 
 ComparedView::ComparedView(ComparisonController& comparing, VolumeView& viewOfA, QWidget* parent)
-    : QWidget(parent), m_comparing(comparing), m_viewOfA(viewOfA),
+    : QWidget(parent), Spoken(*this, QAccessible::Graphic), m_comparing(comparing), m_viewOfA(viewOfA),
       m_hand(
           *this, [&comparing] { return comparing.sceneB(); },
           [&comparing](const Camera& camera, int gesture) { comparing.turnB(camera, gesture); }),
@@ -126,6 +133,13 @@ void ComparedView::follow() {
     if (!m_surface || m_drawsByGl != (m_viewOfA.drawsByGl() && !m_failed)) makeSurface();
     m_surface->setScene(pictureInput(*scene, 1, 1));
     m_overlay->update();
+    speakLater();
+}
+
+QString ComparedView::spokenValue() const {
+    const Scene* const scene = m_comparing.sceneB();
+    if (scene == nullptr || !m_comparing.hasB()) return tr("Nothing is compared");
+    return tr("%1, %2").arg(nameOfB(m_comparing), viewText(scene->camera, scene->volume->geometry()));
 }
 
 void ComparedView::mousePressEvent(QMouseEvent* event) {

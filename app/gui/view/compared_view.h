@@ -7,6 +7,7 @@
 
 #include "view/camera_hand.h"
 #include "view/view_surface.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
@@ -15,7 +16,7 @@ class VolumeView;
 
 /// Drawn as the view of A is, by OpenGL or the CPU, and live as it is. Of a wipe it is as large as A's picture, and
 /// seen through this widget. Its hand turns A too where both share the view.
-class ComparedView : public QWidget {
+class ComparedView : public QWidget, public Spoken {
     Q_OBJECT
 public:
     /// Both outlive this.
@@ -29,6 +30,7 @@ public:
     void setShown(bool shown);
 
     QSize minimumSizeHint() const override { return {80, 50}; }
+    QString spokenValue() const override;
 
 Q_SIGNALS:
     void pictureShown();

@@ -68,8 +68,8 @@ QColor slicePlaneColor(int worldAxis) {
 
 SlicePane::SlicePane(Services& services, const FieldController& fields, RulerController& rulers, int worldAxis,
                      Lane& lane, QWidget* parent)
-    : QWidget(parent), m_services(services), m_fields(fields), m_rulers(rulers), m_rulerHand(rulers),
-      m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
+    : QWidget(parent), Spoken(*this, QAccessible::Graphic), m_services(services), m_fields(fields), m_rulers(rulers),
+      m_rulerHand(rulers), m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
       m_job([](const Request& request, const JobControl&) { return drawn(request); },
             [this](const Request& request, Drawn& result) { show(request, result); }, WhenBusy::FinishOld, &lane) {
     const QLatin1Char axisLetter("XYZ"[worldAxis]);
@@ -480,6 +480,22 @@ QString SlicePane::titleText() const {
     for (const QString& line : {m_fields.name(), m_fields.stateText()})
         if (!line.isEmpty()) text += "\n" + line;
     return text;
+}
+
+QString SlicePane::spokenValue() const {
+    if (!m_services.store().hasVolume()) return tr("No volume is open");
+    return titleText().replace("   ", ", ").replace('\n', "; ").simplified(); // gaps are heard as commas
+}
+
+std::optional<SpokenNumber> SlicePane::spokenNumber() {
+    if (!m_services.store().hasVolume()) return {};
+    const int a = axis();
+    const double now = std::round(crosshairOf(m_services.scene())[a]) + 1;
+    return SpokenNumber{now, 1, static_cast<double>(m_services.scene().volume->dims()[a]), 1, [this, a](double slice) {
+                            Vec3 voxel = crosshairOf(m_services.scene());
+                            voxel[a] = slice - 1;
+                            moveCrosshair(m_services.store(), voxel);
+                        }};
 }
 
 void SlicePane::paintTitle(QPainter& painter) const {

@@ -10,6 +10,7 @@
 #include "session/slice_input.h"
 #include "store/session_store.h"
 #include "view/ruler_layer.h"
+#include "widgets/spoken_value.h"
 
 class QToolButton;
 
@@ -25,7 +26,7 @@ QColor slicePlaneColor(int worldAxis);
 /// The slice of the store's volume, or of the field in its place, that is perpendicular to one world axis (nearly,
 /// where the volume lies obliquely), through the crosshair. Zoom and pan are its own and no part of the session. Drawn
 /// off the window's thread; coarse while it changes where that takes long.
-class SlicePane : public QWidget {
+class SlicePane : public QWidget, public Spoken {
     Q_OBJECT
 public:
     /// `fields` says what is drawn in the place of the data, `rulers` what is measured. `lane` draws the slices of all
@@ -57,6 +58,8 @@ public:
     void fit();
     void setMaximized(bool on); ///< how the button looks
     QSize minimumSizeHint() const override { return {110, 90}; }
+    QString spokenValue() const override;
+    std::optional<SpokenNumber> spokenNumber() override;
 
 Q_SIGNALS:
     void pictureShown();   ///< isComplete() may have changed

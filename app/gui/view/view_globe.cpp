@@ -13,6 +13,7 @@
 
 #include "render/view_direction.h"
 #include "tf/color_maps.h"
+#include "view/camera_hand.h"
 #include "widgets/controls.h"
 #include "widgets/terms.h"
 #include "widgets/theme.h"
@@ -44,7 +45,7 @@ QColor mixed(const QColor& a, const QColor& b, double share) {
 
 } // namespace
 
-ViewGlobe::ViewGlobe(QWidget* parent) : QWidget(parent) {
+ViewGlobe::ViewGlobe(QWidget* parent) : QWidget(parent), Spoken(*this, QAccessible::Graphic) {
     setObjectName("viewGlobe");
     setAccessibleName(tr("Sphere of views"));
     setMouseTracking(true);
@@ -212,6 +213,13 @@ void ViewGlobe::paintEvent(QPaintEvent*) {
     paintSphere(painter);
     paintLegend(painter);
     paintMarks(painter);
+}
+
+QString ViewGlobe::spokenValue() const {
+    const Vec3 toward = -m_camera.forward();
+    QStringList parts{m_words ? m_words(toward).replace('\n', ", ") : anglesText(anglesOf(toward))};
+    if (m_bestDirection && m_current) parts << tr("best so far: %1").arg(anglesText(anglesOf(*m_bestDirection)));
+    return parts.join("; ");
 }
 
 bool ViewGlobe::event(QEvent* event) {

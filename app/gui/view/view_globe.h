@@ -7,12 +7,13 @@
 #include <QWidget>
 
 #include "optimize/views/view_search.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
 /// The point that faces you is the view from where the camera is: the sphere turns with it. Bright is good. The mouse
 /// over the sphere asks for a look from there, a click goes there, a drag turns the view as one in the picture does.
-class ViewGlobe : public QWidget {
+class ViewGlobe : public QWidget, public Spoken {
     Q_OBJECT
 public:
     explicit ViewGlobe(QWidget* parent = nullptr);
@@ -31,6 +32,7 @@ public:
 
     QSize sizeHint() const override { return {220, 246}; }
     QSize minimumSizeHint() const override { return {120, 146}; }
+    QString spokenValue() const override;
 
 Q_SIGNALS:
     void hovered(const pellucid::Vec3& towardEye);

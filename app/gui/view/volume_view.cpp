@@ -54,7 +54,8 @@ QString reasonOf(const RendererTimes& times, bool gl) {
 } // namespace
 
 VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent, FieldController* fields)
-    : QWidget(parent), m_store(store), m_fields(fields), m_overlay(new ViewOverlay(store, this)),
+    : QWidget(parent), Spoken(*this, QAccessible::Graphic), m_store(store), m_fields(fields),
+      m_overlay(new ViewOverlay(store, this)),
       m_hand(
           *this, [&store] { return store.hasVolume() ? &store.scene() : nullptr; },
           [&store](const Camera& camera, int gesture) { store.setCamera(camera, gesture); }),
@@ -79,6 +80,7 @@ VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* pare
         updateScene();
         // What turns with the volume is painted when the next picture comes: twice for each would be half in vain.
         if (drawsByGl() || before.camera == after.camera) m_overlay->update();
+        speakLater();
     });
     if (fields != nullptr)
         connect(fields, &FieldController::changed, this, [this] {
@@ -177,6 +179,13 @@ void VolumeView::updateScene() {
         return setSurface(std::make_unique<GlSurface>());
     }
     m_surface->setScene(picture);
+}
+
+QString VolumeView::spokenValue() const {
+    if (!m_store.hasVolume()) return tr("No volume is open");
+    const Volume& volume = *m_store.scene().volume;
+    return tr("%1, %2").arg(QString::fromStdString(volume.title),
+                            viewText(m_glimpse.value_or(m_store.scene().camera), volume.geometry()));
 }
 
 void VolumeView::lookFrom(const std::optional<Camera>& camera) {

@@ -13,6 +13,7 @@
 #include "view/camera_hand.h"
 #include "view/view_overlay.h"
 #include "view/view_surface.h"
+#include "widgets/spoken_value.h"
 
 namespace pellucid::gui {
 
@@ -22,7 +23,7 @@ enum class ViewRenderer { Auto, Gl, Cpu };
 
 /// Shows the store's scene, moves its camera: left-drag rotates, middle or Shift+left pans, wheel and right-drag
 /// zoom, double-click fits, arrow keys rotate; layers of the overlay take the left button first.
-class VolumeView : public QWidget {
+class VolumeView : public QWidget, public Spoken {
     Q_OBJECT
 public:
     /// Auto draws with whichever is faster here. As long as that has not been measured, which happens beside the first
@@ -43,6 +44,7 @@ public:
 
     QSize sizeHint() const override { return {860, 520}; }
     QSize minimumSizeHint() const override { return {160, 100}; }
+    QString spokenValue() const override;
 
 Q_SIGNALS:
     void pictureShown();

@@ -17,7 +17,8 @@ constexpr double kStep = 0.01, kFarStep = 0.1; // of the width
 
 } // namespace
 
-WipeDivider::WipeDivider(ComparisonController& comparing, QWidget* parent) : QWidget(parent), m_comparing(comparing) {
+WipeDivider::WipeDivider(ComparisonController& comparing, QWidget* parent)
+    : QWidget(parent), Spoken(*this, QAccessible::Slider), m_comparing(comparing) {
     setObjectName("wipeDivider");
     setAccessibleName(tr("Border between A and B"));
     setToolTip(tr("Drag it, or move it by the arrow keys"));
@@ -36,6 +37,15 @@ void WipeDivider::place(const QRect& picture) {
 
 void WipeDivider::moveTo(double share) {
     m_comparing.change([share](ComparisonView& view) { view.divider = std::clamp(share, 0.0, 1.0); });
+}
+
+QString WipeDivider::spokenValue() const {
+    return tr("A in the left %1 % of the picture, B in the rest").arg(100 * m_comparing.view().divider, 0, 'f', 0);
+}
+
+std::optional<SpokenNumber> WipeDivider::spokenNumber() {
+    return SpokenNumber{100 * m_comparing.view().divider, 0, 100, 100 * kStep,
+                        [this](double percent) { moveTo(percent / 100); }};
 }
 
 void WipeDivider::paintEvent(QPaintEvent*) {

@@ -3,12 +3,14 @@
 
 #include <QWidget>
 
+#include "widgets/spoken_value.h"
+
 namespace pellucid::gui {
 
 class ComparisonController;
 
 /// A drag, Left and Right (ten times as far with Shift), Home and End move it; a double click puts it in the middle.
-class WipeDivider : public QWidget {
+class WipeDivider : public QWidget, public Spoken {
     Q_OBJECT
 public:
     static constexpr int kWidth = 17; ///< of what can be taken hold of, pixels
@@ -19,6 +21,8 @@ public:
     void place(const QRect& picture);
     /// First column of B in a picture so wide.
     int columnOf(int width) const;
+    QString spokenValue() const override;
+    std::optional<SpokenNumber> spokenNumber() override;
 
 protected:
     void paintEvent(QPaintEvent* event) override;

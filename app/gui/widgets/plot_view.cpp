@@ -1,5 +1,6 @@
 #include "widgets/plot_view.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <QBuffer>
@@ -18,6 +19,8 @@ namespace pellucid::gui {
 namespace {
 
 constexpr double kReach = 8; ///< of the mouse, pixels
+
+QString valueText(double value) { return QString::number(value, 'g', value < 0.1 ? 3 : 4); }
 
 QFont fontOf(const PlotText& text) {
     QFont font;
@@ -128,7 +131,7 @@ void writePlots(const std::string& file, std::span<const Plot> plots) {
     }
 }
 
-PlotView::PlotView(QWidget* parent) : QWidget(parent) { setMouseTracking(true); }
+PlotView::PlotView(QWidget* parent) : QWidget(parent), Spoken(*this, QAccessible::Chart) { setMouseTracking(true); }
 
 PlotPage PlotView::page() const { return pageOf(size(), std::max(9, fontInfo().pixelSize() - 1)); }
 
@@ -152,6 +155,18 @@ void PlotView::paintEvent(QPaintEvent*) {
     painter.drawLine(QPointF(f.xOf(*m_hovered), f.top), QPointF(f.xOf(*m_hovered), f.bottom));
 }
 
+QString PlotView::spokenValue() const {
+    QStringList parts;
+    for (const PlotSeries& s : m_plot.series) {
+        if (s.points.empty()) continue;
+        const auto [least, most] = std::ranges::minmax_element(s.points, {}, &PlotPoint::y);
+        const QString values =
+            tr("%1 to %2, the last %3").arg(valueText(least->y), valueText(most->y), valueText(s.points.back().y));
+        parts << (s.name.empty() ? values : tr("%1: %2").arg(QString::fromStdString(s.name), values));
+    }
+    return parts.isEmpty() ? tr("There are no values yet") : parts.join("; ");
+}
+
 void PlotView::readAt(double pixel) {
     const PlotBox f = box();
     double x = f.valueAtX(pixel);
@@ -164,8 +179,7 @@ void PlotView::readAt(double pixel) {
             if (std::abs(p.x - x) <= 0.5 && (nearest == nullptr || std::abs(p.x - x) < std::abs(nearest->x - x)))
                 nearest = &p;
         if (nearest == nullptr || s.name.empty()) continue;
-        values << QStringLiteral("%1 %2").arg(QString::fromStdString(s.name),
-                                              QString::number(nearest->y, 'g', nearest->y < 0.1 ? 3 : 4));
+        values << QStringLiteral("%1 %2").arg(QString::fromStdString(s.name), valueText(nearest->y));
     }
     Q_EMIT readOut(values.isEmpty()
                        ? QString()

@@ -8,6 +8,7 @@
 #include <QWidget>
 
 #include "report/plot_drawing.h"
+#include "widgets/spoken_value.h"
 
 class QPainter;
 
@@ -28,7 +29,7 @@ QImage imageOf(std::span<const Plot> plots, const QSize& size, double density);
 void writePlots(const std::string& file, std::span<const Plot> plots);
 
 /// Draws a plot in the colours of the theme. The mouse reads values, and finds dots.
-class PlotView : public QWidget {
+class PlotView : public QWidget, public Spoken {
     Q_OBJECT
 public:
     explicit PlotView(QWidget* parent);
@@ -39,6 +40,7 @@ public:
 
     QSize sizeHint() const override { return {320, 200}; }
     QSize minimumSizeHint() const override { return {160, 110}; }
+    QString spokenValue() const override;
 
 Q_SIGNALS:
     void readOut(const QString& text); ///< the values under the mouse; empty where it has left

@@ -4,18 +4,18 @@
 #include <bit>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 
 #include "base/check.h"
 #include "base/text.h"
+#include "volume/file_names.h"
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
 
 namespace pellucid {
 
 namespace {
-
-/// Pages of one file that are looked at: each costs a header, and a chain of pages may lead back.
-constexpr int kMostPages = 100'000;
 
 FileError failure(const std::string& path, const std::string& what) {
     return {what, path, "copy or write the file again"};
@@ -29,6 +29,19 @@ void readPlain(const std::string& path, const PlainValues& plain, std::size_t wi
     if (width > 1 && plain.bigEndian != (std::endian::native == std::endian::big)) swapBytes(to, width);
 }
 
+/// "1 page", "2 pages".
+std::string pagesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " page" : " pages"); }
+
+/// How far indices are apart, all alike; 0 where they are not, 1 where there is one.
+int stepOf(const std::set<int>& indices) {
+    if (indices.size() < 2) return 1;
+    const int step = *std::next(indices.begin()) - *indices.begin();
+    return *indices.rbegin() - *indices.begin() == step * (static_cast<int>(indices.size()) - 1) &&
+                   std::ranges::adjacent_find(indices, [=](int a, int b) { return b - a != step; }) == indices.end()
+               ? step
+               : 0;
+}
+
 } // namespace
 
 ImageStack::ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before, OpenPictures open)
@@ -38,16 +51,25 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
     std::error_code ec;
     const bool isFolder = std::filesystem::is_directory(path, ec);
     m_files = isFolder ? imagesIn(path) : std::vector<std::string>{path};
-    std::size_t passedOver = 0;
+    std::size_t passedOver = 0, others = 0;
+    std::set<int> named;               // where the file says which pages it means
+    std::set<std::string> saidOfPages; // each once
     for (std::size_t f = 0; f < m_files.size(); ++f) {
         before(bytesOfFile(m_files[f]));
         const auto file = m_open(m_files[f]);
         for (int page = 0; page < kMostPages && file->goTo(page); ++page) {
+            if (page == 0 && !isFolder) {
+                m_order = pageOrderIn({file->description(), file->pixelsPerUnit(0), file->pixelsPerUnit(1),
+                                       file->shape(), std::filesystem::path(path).filename().string()});
+                named.insert(m_order.pages.begin(), m_order.pages.end());
+            }
+            if (!named.empty() && !named.contains(page)) { // of another image
+                ++others;
+                continue;
+            }
             const PageShape shape = file->shape();
             if (m_pages.empty()) {
                 m_shape = shape;
-                if (!isFolder)
-                    m_order = pageOrderIn(file->description(), file->pixelsPerUnit(0), file->pixelsPerUnit(1));
             } else if (!(shape == m_shape)) {
                 if (isFolder)
                     throw failure(m_files[f], "the pictures of this folder are not alike: this one has " +
@@ -56,15 +78,39 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
                 continue;
             }
             m_pages.push_back({f, page, isFolder ? std::nullopt : file->plainPixels()});
+            for (const std::string& text : file->notices())
+                if (saidOfPages.insert(text).second) m_notices.push_back(text);
             if (isFolder) break; // one picture a file
         }
     }
-    if (m_pages.empty()) throw failure(path, "there is no picture in it");
+    if (m_pages.empty())
+        throw failure(path, others > 0 ? "its OME-XML names pages that it does not have" : "there is no picture in it");
     addPlainPages();
-    if (passedOver > 0)
-        m_notices.push_back(std::to_string(passedOver) + (passedOver == 1 ? " page" : " pages") +
-                            " of another size or type passed over");
+    m_notices.insert(m_notices.begin(), m_order.notices.begin(), m_order.notices.end());
+    if (others > 0)
+        m_notices.push_back(pagesText(others) + " that OME-XML does not give to this image " +
+                            (others == 1 ? "is" : "are") + " passed over");
+    if (passedOver > 0) m_notices.push_back(pagesText(passedOver) + " of another size or type passed over");
+    if (isFolder) noteMissing();
     putInOrder();
+}
+
+/// Says which numbers are missing between those of the pictures in a folder.
+void ImageStack::noteMissing() {
+    const std::optional<NumberedNames> names = numberedNames(m_files);
+    const std::optional<NumberGaps> gaps = names ? gapsIn(names->numbers) : std::nullopt;
+    if (!gaps) return;
+    std::string which;
+    if (gaps->missing <= names->numbers.size()) { // more would be no gaps
+        const std::set<std::int64_t> there(names->numbers.begin(), names->numbers.end());
+        std::vector<std::string> missing;
+        for (std::int64_t number = *there.begin(); number < *there.rbegin(); number += gaps->step)
+            if (!there.contains(number)) missing.push_back(names->name.with(number));
+        which = " (" + someNames(missing) + ")";
+    }
+    m_notices.push_back(std::to_string(gaps->missing) + (gaps->missing == 1 ? " picture is" : " pictures are") +
+                        " missing between the numbered ones" + which +
+                        ": the slices before and behind lie next to each other");
 }
 
 /// The pictures behind the first one, where ImageJ has written no directories of them.
@@ -77,8 +123,41 @@ void ImageStack::addPlainPages() {
         m_pages.push_back({0, n, PlainValues{first.start + static_cast<std::uint64_t>(n) * bytes, first.bigEndian}});
 }
 
+/// The pages in the order in which the file names them. Where it lacks some, or others have them, those that are there,
+/// if these are a block of slices, channels and steps.
+void ImageStack::pickPictures() {
+    std::map<int, std::size_t> places; // in m_pages
+    for (std::size_t i = 0; i < m_pages.size(); ++i) places[m_pages[i].page] = i;
+    std::map<char, std::set<int>> there; // indices along each axis
+    std::vector<Page> found;
+    for (std::size_t n = 0; n < m_order.pages.size(); ++n) {
+        const auto place = places.find(m_order.pages[n]);
+        if (place == places.end()) continue;
+        found.push_back(m_pages[place->second]);
+        auto rest = static_cast<int>(n);
+        for (const char axis : m_order.axes) {
+            there[axis].insert(rest % m_order.sizeAlong(axis));
+            rest /= m_order.sizeAlong(axis);
+        }
+    }
+    const int sliceStep = stepOf(there['z']), timeStep = stepOf(there['t']); // channels may be any
+    if (found.size() != there['z'].size() * there['c'].size() * there['t'].size() || sliceStep == 0 || timeStep == 0)
+        return;
+    const std::size_t expected = m_order.pages.size() - static_cast<std::size_t>(m_order.elsewhere);
+    if (found.size() < expected)
+        m_notices.push_back("the file says that it has " + std::to_string(expected) + " pictures, but it has " +
+                            std::to_string(found.size()));
+    m_pages = std::move(found);
+    m_order.slices = static_cast<int>(there['z'].size());
+    m_order.channels = static_cast<int>(there['c'].size());
+    m_order.steps = static_cast<int>(there['t'].size());
+    m_order.spacing.z *= sliceStep;
+    m_order.stepSeconds *= timeStep;
+}
+
 /// The numbers of slices, channels and steps, which have to be those of the pages.
 void ImageStack::putInOrder() {
+    if (!m_order.pages.empty()) pickPictures();
     const auto pages = static_cast<int>(m_pages.size());
     const long long named = static_cast<long long>(std::max(m_order.slices, 1)) * m_order.channels * m_order.steps;
     if (m_order.slices == 0 && m_order.channels == 1 && m_order.steps == 1) {
@@ -97,9 +176,8 @@ const ImageStack::Page& ImageStack::pageAt(int slice, int channel, int step) con
     std::size_t at = 0, width = 1;
     for (const char axis : m_order.axes) {
         const int index = axis == 'z' ? slice : axis == 'c' ? channel : step;
-        const int size = axis == 'z' ? m_order.slices : axis == 'c' ? m_order.channels : m_order.steps;
         at += width * static_cast<std::size_t>(index);
-        width *= static_cast<std::size_t>(size);
+        width *= static_cast<std::size_t>(m_order.sizeAlong(axis));
     }
     return m_pages.at(at);
 }
@@ -115,6 +193,7 @@ ReaderLayout ImageStack::layout(int step) const {
     for (const int size : {m_shape.width, m_shape.height, m_order.slices}) layout.axes.push_back({size});
     if (m_order.channels > 1) layout.axes.push_back({m_order.channels, true});
     layout.spacing = m_order.spacing;
+    layout.scaling = m_order.scaling;
     layout.notices = m_notices;
     findPlain(step, answer);
     return answer;

@@ -37,6 +37,8 @@ private:
     };
     const Page& pageAt(int slice, int channel, int step) const;
     void addPlainPages();
+    void noteMissing();
+    void pickPictures();
     void putInOrder();
     void findPlain(int step, ReaderLayout& answer) const;
 

@@ -25,6 +25,10 @@ public:
         return {spec.width, spec.height, spec.nchannels,
                 spec.format == OIIO::TypeDesc::UINT8 ? ValueType::U8 : ValueType::U16};
     }
+    std::vector<std::string> notices() override {
+        const std::string text = orientationNotice(m_file->spec().get_int_attribute("Orientation", 1));
+        return text.empty() ? std::vector<std::string>() : std::vector{text};
+    }
     void read(std::span<std::byte> to) override {
         const PageShape page = shape();
         const OIIO::TypeDesc type = page.type == ValueType::U8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;

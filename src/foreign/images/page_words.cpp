@@ -1,11 +1,15 @@
 #include "foreign/images/page_words.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include "base/text.h"
+#include "volume/file_names.h"
 #include "volume/formats/text_header.h"
 
 namespace pellucid {
@@ -19,15 +23,104 @@ int countIn(const std::string& text, int otherwise) {
     return number >= 1 && number <= kMost ? static_cast<int>(number) : otherwise;
 }
 
-double lengthIn(const std::string& text, double otherwise) {
-    const double number = numberIn(trimmed(text));
-    return number > 0 && std::isfinite(number) ? number : otherwise;
+double lengthOf(double number, double otherwise) { return number > 0 && std::isfinite(number) ? number : otherwise; }
+double lengthIn(const std::string& text, double otherwise) { return lengthOf(numberIn(trimmed(text)), otherwise); }
+
+/// A unit as the tables below have it: ImageJ escapes what is not ASCII, and µ is a Greek letter to some.
+std::string plainUnit(const std::string& unit) {
+    std::string plain = trimmed(unit);
+    for (const std::string_view mu : {"\\u00B5", "\\u00b5", "\xce\xbc", "\xb5"})
+        if (plain.starts_with(mu)) return "µ" + plain.substr(mu.size());
+    return plain.size() > 2 && !plain.starts_with("µ") && !plain.starts_with("Å") ? lowerCase(plain) : plain;
+}
+
+std::optional<double> found(const std::map<std::string, double>& units, const std::string& unit) {
+    const auto it = units.find(plainUnit(unit));
+    return it == units.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<double> micrometresOf(const std::string& unit) {
+    static const std::map<std::string, double> kUnits{
+        {"µm", 1},         {"um", 1},           {"micron", 1},       {"microns", 1}, {"micrometer", 1},
+        {"micrometre", 1}, {"nm", 1e-3},        {"pm", 1e-6},        {"fm", 1e-9},   {"Å", 1e-4},
+        {"mm", 1e3},       {"millimeter", 1e3}, {"nanometer", 1e-3}, {"cm", 1e4},    {"centimeter", 1e4},
+        {"dm", 1e5},       {"m", 1e6},          {"meter", 1e6},      {"km", 1e9},    {"Mm", 1e12},
+        {"in", 25400},     {"inch", 25400},     {"inches", 25400},   {"ft", 304800}, {"feet", 304800},
+        {"thou", 25.4}};
+    return found(kUnits, unit);
+}
+
+std::optional<double> secondsOf(const std::string& unit) {
+    static const std::map<std::string, double> kUnits{
+        {"s", 1},     {"sec", 1},     {"second", 1},  {"seconds", 1},  {"ms", 1e-3}, {"msec", 1e-3}, {"µs", 1e-6},
+        {"us", 1e-6}, {"usec", 1e-6}, {"µsec", 1e-6}, {"ns", 1e-9},    {"min", 60},  {"minute", 60}, {"minutes", 60},
+        {"h", 3600},  {"hr", 3600},   {"hour", 3600}, {"hours", 3600}, {"d", 86400}, {"day", 86400}, {"days", 86400}};
+    return found(kUnits, unit);
+}
+
+/// `interval` 0: not known.
+void setStepTime(PageOrder& order, double interval, const std::string& unit) {
+    const std::optional<double> seconds = secondsOf(unit);
+    if (seconds)
+        order.stepSeconds = lengthOf(interval * *seconds, 0);
+    else if (interval > 0 && order.steps > 1)
+        order.notices.push_back("the unit of time " + inQuotes(unit) + " is not known: time steps are counted");
+}
+
+/// Distances between voxels along x, y and z, 0 where they are not known, and their units: all in the unit of the first
+/// that is known, and as far as that where they are not.
+void setSpacing(PageOrder& order, const Vec3& distances, const std::array<std::string, 3>& units) {
+    int first = 0;
+    while (first < 3 && !(distances[first] > 0)) ++first;
+    if (first == 3) return;
+    const auto axis = [](int a) { return std::string(1, "xyz"[a]); };
+    for (int a = 0; a < 3; ++a) {
+        const std::string &unit = units[static_cast<std::size_t>(a)], &common = units[static_cast<std::size_t>(first)];
+        order.spacing[a] = distances[first];
+        if (!(distances[a] > 0)) {
+            if (a < 2 || order.slices != 1)
+                order.notices.push_back("the file does not say how far voxels are apart along " + axis(a) +
+                                        ": as far as along " + axis(first) + " is taken");
+            continue;
+        }
+        const std::optional<double> from = micrometresOf(unit), to = micrometresOf(common);
+        const bool isSame = plainUnit(unit) == plainUnit(common);
+        order.spacing[a] =
+            lengthOf(isSame || !from || !to ? distances[a] : distances[a] * *from / *to, distances[first]);
+        if (!isSame && (!from || !to))
+            order.notices.push_back("distances along " + axis(a) + " are in " + inQuotes(unit) + ", those along " +
+                                    axis(first) + " in " + inQuotes(common) +
+                                    ", which cannot be converted: the numbers are taken as they are");
+    }
+}
+
+using Fields = std::map<std::string, std::string>;
+
+/// What ImageJ makes of stored numbers of 8 or 16 bits; of others it takes no notice.
+void setCalibration(PageOrder& order, Fields& fields, const PageShape& shape) {
+    constexpr int kStraightLine = 0, kNone = 20;
+    const bool isCounted = shape.type == ValueType::U8 || shape.type == ValueType::U16 || shape.type == ValueType::I16;
+    if (!fields.contains("cf") || shape.samples > 1 || !isCounted) return;
+    const double function = numberIn(trimmed(fields["cf"]));
+    if (function == kNone) return;
+    const double slope = numberIn(trimmed(fields["c1"]));
+    double intercept = numberIn(trimmed(fields["c0"]));
+    // To ImageJ a signed number of 16 bits is one without sign that is 32 768 larger.
+    if (shape.type == ValueType::I16) intercept += 32768 * slope;
+    if (function != kStraightLine || !std::isfinite(slope) || !std::isfinite(intercept) || slope == 0) {
+        order.notices.push_back("ImageJ's calibration of the values (function " + inQuotes(trimmed(fields["cf"])) +
+                                ") is not a straight line: the stored values are shown");
+        return;
+    }
+    if (slope != 1 || intercept != 0) order.scaling = ValueScaling{slope, intercept};
+    if (trimmed(fields["zeroclip"]) == "true")
+        order.notices.emplace_back("ImageJ shows values below 0 as 0 (zeroclip): here they stay as they are");
 }
 
 /// Lines "name=value".
-PageOrder orderOfImageJ(const std::string& description, double pixelsPerUnitX, double pixelsPerUnitY) {
-    std::map<std::string, std::string> fields;
-    for (const std::string& text : splitAt('\n', description))
+PageOrder orderOfImageJ(const FirstPage& page) {
+    Fields fields;
+    for (const std::string& text : splitAt('\n', page.description))
         if (const std::size_t sign = text.find('='); sign != std::string::npos)
             fields[text.substr(0, sign)] = text.substr(sign + 1);
     PageOrder order;
@@ -38,59 +131,239 @@ PageOrder orderOfImageJ(const std::string& description, double pixelsPerUnitX, d
     order.slices = countIn(fields["slices"], 0);
     order.steps = countIn(fields["frames"], 1);
     if (order.slices == 0 && (order.channels > 1 || order.steps > 1)) order.slices = 1;
-    if (pixelsPerUnitX > 0) order.spacing.x = 1 / pixelsPerUnitX;
-    if (pixelsPerUnitY > 0) order.spacing.y = 1 / pixelsPerUnitY;
-    order.spacing.z = lengthIn(fields["spacing"], order.spacing.x);
-    order.stepSeconds = lengthIn(fields["finterval"], 0);
+    // Negative where slices lie the other way up, which ImageJ does not show either.
+    const double apart = lengthOf(std::abs(numberIn(trimmed(fields["spacing"]))), 0);
+    const auto width = [](double pixelsPerUnit) { return pixelsPerUnit > 0 ? lengthOf(1 / pixelsPerUnit, 1) : 1; };
+    const double x = width(page.pixelsPerUnitX), y = width(page.pixelsPerUnitY);
+    if (apart == 0 && x != 1 && std::max(order.images, order.slices) > 1 && order.slices != 1)
+        order.notices.emplace_back(
+            "the file does not say how far slices are apart, which ImageJ leaves out where it is 1: 1 is taken");
+    const auto unit = [&](const char* name) { return fields.contains(name) ? fields[name] : fields["unit"]; };
+    setSpacing(order, {x, y, apart > 0 ? apart : 1}, {unit("unit"), unit("yunit"), unit("zunit")});
+    setStepTime(order, lengthIn(fields["finterval"], 0), fields.contains("tunit") ? fields["tunit"] : "s");
+    setCalibration(order, fields, page.shape);
     return order;
 }
 
-/// The value of an attribute in a tag; empty where it has none.
-std::string attribute(const std::string& tag, const std::string& name) {
-    const std::size_t at = tag.find(" " + name + "=\"");
-    if (at == std::string::npos) return {};
-    const std::size_t begin = at + name.size() + 3, end = tag.find('"', begin);
-    return end == std::string::npos ? std::string() : tag.substr(begin, end - begin);
+/// The tags of an XML text, one after the other; comments and the like are passed over.
+class Tags {
+public:
+    explicit Tags(std::string_view text) : m_text(text) {}
+
+    bool next() {
+        while ((m_at = m_text.find('<', m_at)) != std::string_view::npos) {
+            if (passOver("<!--", "-->") || passOver("<![CDATA[", "]]>") || passOver("<?", "?>")) continue;
+            const std::size_t begin = ++m_at;
+            char quote = 0;
+            for (; m_at < m_text.size() && (quote != 0 || m_text[m_at] != '>'); ++m_at) {
+                const char c = m_text[m_at];
+                if (quote != 0 ? c == quote : c == '"' || c == '\'') quote = quote != 0 ? '\0' : c;
+            }
+            m_tag = m_text.substr(begin, m_at - begin);
+            return true;
+        }
+        return false;
+    }
+    /// Without the prefix of its name space; with a slash where it closes.
+    std::string name() const {
+        const std::string_view whole = m_tag.substr(0, m_tag.find_first_of(" \t\r\n", 0));
+        const std::size_t colon = whole.find(':');
+        std::string name(colon == std::string_view::npos ? whole : whole.substr(colon + 1));
+        if (name.ends_with('/')) name.pop_back();
+        return whole.starts_with('/') && colon != std::string_view::npos ? "/" + name : name;
+    }
+    /// Empty where it has none.
+    std::string get(std::string_view attribute) const {
+        for (std::size_t at = m_tag.find(attribute); at != std::string_view::npos; at = m_tag.find(attribute, at + 1)) {
+            const std::size_t quote = at + attribute.size() + 1;
+            if (at == 0 || std::string_view(" \t\r\n").find(m_tag[at - 1]) == std::string_view::npos ||
+                quote >= m_tag.size() || m_tag[quote - 1] != '=' || (m_tag[quote] != '"' && m_tag[quote] != '\''))
+                continue;
+            const std::size_t end = m_tag.find(m_tag[quote], quote + 1);
+            return std::string(m_tag.substr(quote + 1, end == std::string_view::npos ? 0 : end - quote - 1));
+        }
+        return {};
+    }
+    /// What stands between the tag and the next one.
+    std::string text() const {
+        const std::size_t begin = std::min(m_at + 1, m_text.size());
+        return trimmed(m_text.substr(begin, m_text.find('<', begin) - begin));
+    }
+
+private:
+    bool passOver(std::string_view begin, std::string_view end) {
+        if (!m_text.substr(m_at).starts_with(begin)) return false;
+        const std::size_t last = m_text.find(end, m_at + begin.size());
+        m_at = last == std::string_view::npos ? m_text.size() : last + end.size();
+        return true;
+    }
+
+    std::string_view m_text, m_tag;
+    std::size_t m_at = 0;
+};
+
+/// Pages that follow each other, as an element TiffData gives them.
+struct TiffData {
+    std::array<int, 3> first{0, 0, 0}; ///< slice, channel and step of the first one
+    int page = 0;
+    std::optional<int> count; ///< empty: up to where the next element begins
+    std::string uuid, file;   ///< of the file that they are in; both empty: this one
+    bool isPlain() const { return first == std::array{0, 0, 0} && page == 0 && !count; }
+};
+
+/// The first image of a text of OME.
+struct OmeImage {
+    int count = 0; ///< of images that there are
+    std::string name, uuid;
+    std::vector<TiffData> data;
+};
+
+int wholeIn(const std::string& text, int otherwise) {
+    const double number = numberIn(trimmed(text));
+    return number >= 0 && number <= kMost ? static_cast<int>(number) : otherwise;
 }
 
-/// Micrometres of a unit of length; those of OME without one are micrometres.
-std::optional<double> micrometresOf(const std::string& unit) {
-    static const std::map<std::string, double> kUnits{{"", 1},     {"µm", 1},  {"um", 1},   {"nm", 1e-3}, {"mm", 1e3},
-                                                      {"cm", 1e4}, {"m", 1e6}, {"Å", 1e-4}, {"pm", 1e-6}};
-    const auto it = kUnits.find(unit);
-    return it == kUnits.end() ? std::nullopt : std::optional(it->second);
+TiffData tiffDataIn(const Tags& tags) {
+    TiffData data;
+    data.first = {wholeIn(tags.get("FirstZ"), 0), wholeIn(tags.get("FirstC"), 0), wholeIn(tags.get("FirstT"), 0)};
+    data.page = wholeIn(tags.get("IFD"), 0);
+    std::string count = tags.get("PlaneCount");
+    if (count.empty()) count = tags.get("NumPlanes"); // before 2008
+    if (!count.empty())
+        data.count = wholeIn(count, 0);
+    else if (!tags.get("IFD").empty())
+        data.count = 1;
+    return data;
 }
 
-/// The element Pixels of the first image.
-PageOrder orderOfOme(const std::string& description) {
-    PageOrder order;
+void readPixels(const Tags& tags, PageOrder& order) {
     order.software = "OME";
-    const std::size_t begin = description.find("<Pixels"), end = description.find('>', begin);
-    if (begin == std::string::npos || end == std::string::npos) return order;
-    const std::string tag = description.substr(begin, end - begin);
-    const std::string dimensions = lowerCase(attribute(tag, "DimensionOrder")); // "xyzct"
+    const std::string dimensions = lowerCase(tags.get("DimensionOrder")); // "xyzct"
     order.axes = dimensions.starts_with("xy") ? dimensions.substr(2) : "";
     if (!std::ranges::is_permutation(order.axes, std::string("zct"))) order.axes = "zct"; // the most frequent one
-    order.slices = countIn(attribute(tag, "SizeZ"), 0);
-    order.channels = countIn(attribute(tag, "SizeC"), 1);
-    order.steps = countIn(attribute(tag, "SizeT"), 1);
-    order.stepSeconds = lengthIn(attribute(tag, "TimeIncrement"), 0);
-    for (int a = 0; a < 3; ++a) { // all in the unit of x
+    order.slices = countIn(tags.get("SizeZ"), 0);
+    order.channels = countIn(tags.get("SizeC"), 1);
+    order.steps = countIn(tags.get("SizeT"), 1);
+    const auto unitIn = [&](const std::string& attribute, const char* otherwise) {
+        const std::string unit = tags.get(attribute);
+        return unit.empty() ? otherwise : unit;
+    };
+    setStepTime(order, lengthIn(tags.get("TimeIncrement"), 0), unitIn("TimeIncrementUnit", "s"));
+    Vec3 distances{0, 0, 0};
+    std::array<std::string, 3> units;
+    for (int a = 0; a < 3; ++a) {
         const std::string name = std::string("PhysicalSize") + "XYZ"[a];
-        const auto unit = micrometresOf(attribute(tag, name + "Unit")),
-                   first = micrometresOf(attribute(tag, "PhysicalSizeXUnit"));
-        order.spacing[a] = lengthIn(attribute(tag, name), 1) * (unit && first ? *unit / *first : 1);
+        distances[a] = lengthIn(tags.get(name), 0);
+        units[static_cast<std::size_t>(a)] = unitIn(name + "Unit", "µm");
     }
+    setSpacing(order, distances, units);
+}
+
+/// Which page each picture is. Says what is in other files, and which these are.
+void findPages(PageOrder& order, OmeImage& image, const FirstPage& page) {
+    const long long all = static_cast<long long>(order.slices) * order.channels * order.steps;
+    std::vector<TiffData>& data = image.data;
+    if (data.empty()) data.emplace_back();
+    const auto isHere = [&](const TiffData& d) {
+        return (d.uuid.empty() && d.file.empty()) || (!d.uuid.empty() && d.uuid == image.uuid) ||
+               (!d.file.empty() && d.file == page.fileName);
+    };
+    const auto nameOf = [](const TiffData& d) { return d.file.empty() ? d.uuid : d.file; };
+    std::set<std::string, decltype(&countsBefore)> others(&countsBefore);
+    for (const TiffData& d : data)
+        if (!isHere(d)) others.insert(nameOf(d));
+    const bool isNamed = std::ranges::any_of(data, isHere);
+    if (!isNamed && others.size() > 1) {
+        order.notices.push_back("its OME-XML describes other files (" + someNames({others.begin(), others.end()}) +
+                                ") but not one of this name: all pages are shown as slices");
+        order.slices = 0;
+        order.channels = order.steps = 1;
+        return;
+    }
+    const bool isAll = data.size() == 1 && data.front().isPlain() && image.count < 2;
+    if (isAll || all < 1 || all > kMostPages) return;
+
+    // Where in the order of axes the pictures of each element begin; behind the last where there are none.
+    const auto firstOf = [&](const TiffData& d) {
+        const int perPage = std::max(1, page.shape.samples); // some count its samples as channels
+        std::array<int, 3> at = d.first;
+        if (at[1] >= order.channels) at[1] /= perPage;
+        long long index = 0, width = 1;
+        for (const char axis : order.axes) {
+            const int n = at[axis == 'z' ? 0 : axis == 'c' ? 1 : 2], size = order.sizeAlong(axis);
+            if (n >= size) return all;
+            index += width * n;
+            width *= size;
+        }
+        return index;
+    };
+    std::set<long long> begins{all};
+    for (const TiffData& d : data) begins.insert(firstOf(d));
+    order.pages.assign(static_cast<std::size_t>(all), PageOrder::kElsewhere);
+    std::vector<bool> isGiven(static_cast<std::size_t>(all));
+    bool isGivenTwice = false;
+    for (const TiffData& d : data) {
+        const bool here = isHere(d) || !isNamed; // the only one there is: it has got another name
+        const long long first = firstOf(d);
+        if (first >= all) continue;
+        const long long end = d.count ? std::min(all, first + *d.count) : *begins.upper_bound(first);
+        for (long long n = first; n < end; ++n) {
+            const auto at = static_cast<std::size_t>(n);
+            if (isGiven[at]) {
+                isGivenTwice = true;
+                break;
+            }
+            isGiven[at] = true;
+            if (here) order.pages[at] = d.page + static_cast<int>(n - first);
+            if (!here) ++order.elsewhere;
+        }
+    }
+    if (isGivenTwice)
+        order.notices.emplace_back("its OME-XML gives several pages for the same picture: the first one is shown");
+    if (order.elsewhere > 0)
+        order.notices.push_back(
+            std::to_string(order.elsewhere) + " of " + std::to_string(all) +
+            " pictures are in other files and are not shown: " + someNames({others.begin(), others.end()}));
+}
+
+PageOrder orderOfOme(const FirstPage& page) {
+    PageOrder order;
+    OmeImage image;
+    std::string elsewhere;
+    for (Tags tags(page.description); tags.next();) {
+        const std::string name = tags.name();
+        if (name == "OME") image.uuid = tags.get("UUID");
+        if (name == "BinaryOnly") elsewhere = tags.get("MetadataFile");
+        if (name == "Image" && ++image.count == 1) image.name = tags.get("Name");
+        if (image.count > 1) continue;
+        if (name == "Pixels" && order.software.empty()) readPixels(tags, order);
+        if (name == "TiffData") image.data.push_back(tiffDataIn(tags));
+        if (name == "UUID" && !image.data.empty()) {
+            image.data.back().uuid = tags.text();
+            image.data.back().file = tags.get("FileName");
+        }
+    }
+    if (order.software.empty()) {
+        if (!elsewhere.empty())
+            order.notices.push_back("another file, " + inQuotes(elsewhere) +
+                                    ", describes its pages and how far pixels are apart, and is not read: all pages "
+                                    "are shown as slices, pixels 1 apart");
+        return order;
+    }
+    // Channels that the pixels have beside each other are not pages.
+    if (page.shape.samples > 1 && order.channels % page.shape.samples == 0) order.channels /= page.shape.samples;
+    if (image.count > 1)
+        order.notices.push_back("image 1 of " + std::to_string(image.count) +
+                                (image.name.empty() ? "" : ", " + inQuotes(image.name) + ",") + " is shown");
+    findPages(order, image, page);
     return order;
 }
 
 } // namespace
 
-PageOrder pageOrderIn(const std::string& description, double pixelsPerUnitX, double pixelsPerUnitY) {
-    if (description.starts_with("ImageJ=")) return orderOfImageJ(description, pixelsPerUnitX, pixelsPerUnitY);
-    if (description.find("<OME") != std::string::npos && description.find("<Pixels") != std::string::npos)
-        return orderOfOme(description);
-    return {};
+PageOrder pageOrderIn(const FirstPage& page) {
+    if (page.description.starts_with("ImageJ=")) return orderOfImageJ(page);
+    return page.description.find("OME") != std::string::npos ? orderOfOme(page) : PageOrder();
 }
 
 } // namespace pellucid

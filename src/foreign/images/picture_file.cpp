@@ -55,11 +55,6 @@ public:
     }
 
     PageShape shape() override {
-        const auto number = [&](ttag_t tag, std::uint16_t otherwise) {
-            std::uint16_t value = otherwise;
-            TIFFGetFieldDefaulted(m_file, tag, &value);
-            return static_cast<int>(value);
-        };
         std::uint32_t width = 0, height = 0;
         TIFFGetField(m_file, TIFFTAG_IMAGEWIDTH, &width);
         TIFFGetField(m_file, TIFFTAG_IMAGELENGTH, &height);
@@ -67,6 +62,14 @@ public:
         if (width < 1 || height < 1 || width > kMost || height > kMost)
             throw pictureFailure(m_path,
                                  "a page has " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+        std::uint32_t depth = 1, tileDepth = 1;
+        TIFFGetFieldDefaulted(m_file, TIFFTAG_IMAGEDEPTH, &depth);
+        TIFFGetFieldDefaulted(m_file, TIFFTAG_TILEDEPTH, &tileDepth);
+        if (depth > 1 || tileDepth > 1)
+            throw pictureFailure(m_path,
+                                 "a page has several slices (ImageDepth " + std::to_string(depth) + ", TileDepth " +
+                                     std::to_string(tileDepth) + "), which is not supported",
+                                 "", "write each slice as a page of its own, without tiles that have a depth");
         PageShape shape;
         shape.width = static_cast<int>(width);
         shape.height = static_cast<int>(height);
@@ -82,10 +85,12 @@ public:
             {{32, SAMPLEFORMAT_INT}, ValueType::I32},    {{64, SAMPLEFORMAT_INT}, ValueType::I64},
             {{32, SAMPLEFORMAT_IEEEFP}, ValueType::F32}, {{64, SAMPLEFORMAT_IEEEFP}, ValueType::F64}};
         const auto type = kTypes.find({bits, format});
-        if (type == kTypes.end() || shape.samples < 1 || shape.samples > 1000)
-            throw pictureFailure(m_path, "pixels of " + std::to_string(shape.samples) + " samples of " +
-                                             std::to_string(bits) + " bits are not supported");
-        shape.type = type->second;
+        if (shape.samples < 1 || shape.samples > 1000)
+            throw pictureFailure(m_path, "pixels of " + std::to_string(shape.samples) + " samples are not supported");
+        const bool isCount = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
+        shape.isBilevel = bits == 1 && shape.samples == 1 && isCount;
+        if (type == kTypes.end() && !shape.isBilevel) throw unsupported(bits, format);
+        shape.type = shape.isBilevel ? ValueType::U8 : type->second;
         return shape;
     }
 
@@ -105,10 +110,12 @@ public:
         }
         if (tileWidth < 1 || tileHeight < 1) throw pictureFailure(m_path, "a page has tiles without pixels");
         const std::size_t pixel = sample * static_cast<std::size_t>(inPlane);
+        const auto rowBytes = [&](std::size_t columns) { return page.isBilevel ? (columns + 7) / 8 : pixel * columns; };
         const auto tileBytes = static_cast<std::size_t>(isTiled ? TIFFTileSize64(m_file) : TIFFStripSize64(m_file));
-        if (tileBytes < pixel * tileWidth * tileHeight)
+        if (tileBytes < rowBytes(tileWidth) * tileHeight)
             throw pictureFailure(m_path, "a page has tiles of a wrong size");
-        const bool isInPlace = !isTiled && planes == 1; // strips are rows of whole pixels, as they are wanted
+        const bool isInPlace =
+            !isTiled && planes == 1 && !page.isBilevel; // strips are rows of whole pixels, as they are wanted
         std::vector<char> tile(isInPlace ? 0 : tileBytes);
         std::uint32_t number = 0;
         for (int plane = 0; plane < planes; ++plane)
@@ -116,7 +123,7 @@ public:
                 for (std::uint32_t x = 0; x < width; x += tileWidth, ++number) {
                     const std::uint32_t rows = std::min(tileHeight, height - y),
                                         columns = std::min(tileWidth, width - x);
-                    const auto wanted = static_cast<tmsize_t>(pixel * tileWidth * (isTiled ? tileHeight : rows));
+                    const auto wanted = static_cast<tmsize_t>(rowBytes(tileWidth) * (isTiled ? tileHeight : rows));
                     if (isDeflated()) requireSound(number, isTiled);
                     void* const into = isInPlace ? static_cast<void*>(to.data() + pixel * width * y) : tile.data();
                     const tmsize_t got = isTiled ? TIFFReadEncodedTile(m_file, number, into, wanted)
@@ -124,8 +131,13 @@ public:
                     if (got < wanted)
                         throw pictureFailure(m_path, "page " + std::to_string(m_page) + " cannot be read",
                                              tiffComplaint());
-                    for (std::uint32_t row = 0; row < rows && !isInPlace; ++row)
-                        put(to, {x, y + row}, columns, tile.data() + pixel * tileWidth * row, page, plane, pixel);
+                    for (std::uint32_t row = 0; row < rows && !isInPlace; ++row) {
+                        const char* from = tile.data() + rowBytes(tileWidth) * row;
+                        if (page.isBilevel)
+                            putBits(to.subspan(std::size_t{width} * (y + row) + x, columns), from);
+                        else
+                            put(to, {x, y + row}, columns, from, page, plane, pixel);
+                    }
                 }
     }
 
@@ -136,7 +148,7 @@ public:
             TIFFGetFieldDefaulted(m_file, tag, &value);
             return value == wanted;
         };
-        if (TIFFIsTiled(m_file) != 0 || (isPlanar() && page.samples > 1) ||
+        if (page.isBilevel || TIFFIsTiled(m_file) != 0 || (isPlanar() && page.samples > 1) ||
             !is(TIFFTAG_COMPRESSION, COMPRESSION_NONE, COMPRESSION_NONE) ||
             !is(TIFFTAG_FILLORDER, FILLORDER_MSB2LSB, FILLORDER_MSB2LSB) ||
             is(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_YCBCR, PHOTOMETRIC_MINISBLACK))
@@ -161,6 +173,16 @@ public:
         const char* text = nullptr;
         return TIFFGetField(m_file, TIFFTAG_IMAGEDESCRIPTION, &text) != 0 && text != nullptr ? text : "";
     }
+    std::vector<std::string> notices() override {
+        std::vector<std::string> all;
+        const int photometric = number(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        if (photometric == PHOTOMETRIC_MINISWHITE)
+            all.emplace_back("small values are meant to be bright (MINISWHITE): values are kept as they are");
+        if (photometric == PHOTOMETRIC_PALETTE) all.emplace_back("colours of a palette are shown as their numbers");
+        if (std::string text = orientationNotice(number(TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT)); !text.empty())
+            all.push_back(std::move(text));
+        return all;
+    }
     double pixelsPerUnit(int axis) override {
         float number = 0;
         TIFFGetField(m_file, axis == 0 ? TIFFTAG_XRESOLUTION : TIFFTAG_YRESOLUTION, &number);
@@ -168,6 +190,23 @@ public:
     }
 
 private:
+    int number(ttag_t tag, std::uint16_t otherwise) const {
+        std::uint16_t value = otherwise;
+        TIFFGetFieldDefaulted(m_file, tag, &value);
+        return value;
+    }
+    /// Of pixels that are such numbers.
+    FileError unsupported(int bits, int format) const {
+        const std::string kind = std::to_string(bits) + "-bit ";
+        if (format == SAMPLEFORMAT_IEEEFP)
+            return pictureFailure(m_path, "pixels that are " + kind + "floating-point numbers are not supported", "",
+                                  "save them as 32-bit floating point");
+        if (format == SAMPLEFORMAT_COMPLEXINT || format == SAMPLEFORMAT_COMPLEXIEEEFP)
+            return pictureFailure(m_path, "pixels that are complex numbers are not supported", "",
+                                  "save their real parts, or their magnitudes, as 32-bit floating point");
+        return pictureFailure(m_path, "pixels that are " + kind + "integers are not supported", "",
+                              "save them with 8, 16 or 32 bits");
+    }
     bool isPlanar() const {
         std::uint16_t planar = PLANARCONFIG_CONTIG;
         TIFFGetFieldDefaulted(m_file, TIFFTAG_PLANARCONFIG, &planar);
@@ -214,6 +253,12 @@ private:
         for (std::uint32_t i = 0; i < columns; ++i) std::memcpy(out + i * whole, from + i * sample, sample);
     }
 
+    /// A row, or a part of it: the first pixel is the highest bit.
+    static void putBits(std::span<std::byte> to, const char* from) {
+        for (std::size_t i = 0; i < to.size(); ++i)
+            to[i] = static_cast<std::byte>(static_cast<unsigned char>(from[i / 8]) >> (7 - i % 8) & 1);
+    }
+
     std::string m_path;
     TIFF* m_file = nullptr;
     int m_page = 0;
@@ -222,8 +267,19 @@ private:
 
 } // namespace
 
-FileError pictureFailure(const std::string& path, const std::string& what, const std::string& why) {
-    return {what + (why.empty() ? "" : " (" + why.substr(0, 300) + ")"), path, "copy or write the file again"};
+FileError pictureFailure(const std::string& path, const std::string& what, const std::string& why,
+                         const std::string& toDo) {
+    return {what + (why.empty() ? "" : " (" + why.substr(0, 300) + ")"), path, toDo};
+}
+
+std::string orientationNotice(int orientation) {
+    static constexpr const char* kShown[] = {"mirrored from left to right",   "turned by 180°",
+                                             "mirrored from top to bottom",   "mirrored along the diagonal",
+                                             "turned by 90° clockwise",       "mirrored along the other diagonal",
+                                             "turned by 90° counterclockwise"};
+    if (orientation < 2 || orientation > 8) return {};
+    return "the file says that pictures are to be shown " + std::string(kShown[orientation - 2]) + " (Orientation " +
+           std::to_string(orientation) + "): they stay as they are stored";
 }
 
 std::uint64_t bytesOf(const PageShape& shape) {
@@ -234,7 +290,7 @@ std::uint64_t bytesOf(const PageShape& shape) {
 std::string textOf(const PageShape& shape) {
     return std::to_string(shape.width) + " x " + std::to_string(shape.height) + " pixels, " +
            std::to_string(shape.samples) + (shape.samples == 1 ? " sample of " : " samples of ") +
-           std::to_string(8 * bytesPerValue(shape.type)) + " bits";
+           (shape.isBilevel ? "1 bit" : std::to_string(8 * bytesPerValue(shape.type)) + " bits");
 }
 
 std::unique_ptr<PictureFile> openTiff(const std::string& path) { return std::make_unique<TiffFile>(path); }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "foreign/foreign_volume.h"
 
@@ -15,6 +16,7 @@ namespace pellucid {
 struct PageShape {
     int width = 0, height = 0, samples = 1;
     ValueType type = ValueType::U8;
+    bool isBilevel = false; ///< stored with one bit for each pixel; bytes of 0 and 1 when read
     bool operator==(const PageShape&) const = default;
 };
 std::string textOf(const PageShape& shape); ///< "3 x 2 pixels, 1 sample of 16 bits"
@@ -31,11 +33,18 @@ public:
     /// Where the pixels of the page it is at need no library. Empty where they do, or where that is not known.
     virtual std::optional<PlainValues> plainPixels() { return {}; }
     virtual std::string description() { return {}; }
+    /// What people should know of the page it is at.
+    virtual std::vector<std::string> notices() { return {}; }
     virtual double pixelsPerUnit([[maybe_unused]] int axis) { return 0; } ///< 0: not known
 };
 
 /// Of a picture that cannot be read, and what its library says.
-FileError pictureFailure(const std::string& path, const std::string& what, const std::string& why = "");
+FileError pictureFailure(const std::string& path, const std::string& what, const std::string& why = "",
+                         const std::string& toDo = "copy or write the file again");
+
+/// Of a picture that is to be shown another way round than it is stored, as TIFF and EXIF count it; empty for the
+/// others.
+std::string orientationNotice(int orientation);
 
 /// Throws FileError.
 std::unique_ptr<PictureFile> openTiff(const std::string& path);

@@ -66,7 +66,7 @@ WrittenTf writeTable(const TfToWrite& tf) {
 } // namespace
 
 TfFormat csvTfFormat() {
-    return {"csv",       "Table",    ".tf.csv",  true, "features; opacities hold for one voxel",
+    return {"csv",       "Table",    "a table (CSV)", ".tf.csv", true, "features; opacities hold for one voxel",
             &knowsTable, &readTable, &writeTable};
 }
 

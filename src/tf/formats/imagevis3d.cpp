@@ -57,13 +57,14 @@ ReadTf readTable(const ForeignFile& file) {
         addToRun(curves.opacities, OpacityNode{x, v[3], {}}, &OpacityNode::opacity);
     }
     ReadTf read = tfOfCurves(curves, ValueRange{0, 1}, file.path());
-    read.notices.push_back(noDomainNotice());
+    read.positions = ValueRange{0, 1};
+    read.spansData = true;
     return read;
 }
 
 WrittenTf writeTable(const TfToWrite& tf) {
     TransferFunction all;
-    all.points = tf.points({});
+    all.points = tf.overData().points({});
     const TfSampler sampler(all);
     WrittenTf written;
     written.text = std::to_string(kEntries) + "\n";
@@ -81,7 +82,8 @@ WrittenTf writeTable(const TfToWrite& tf) {
 } // namespace
 
 TfFormat imageVis3DFormat() {
-    return {"imagevis3d", "ImageVis3D", ".1dt",     true, "the data range, features; all is a table of 4096 entries",
+    return {"imagevis3d", "ImageVis3D", "a transfer function of ImageVis3D",
+            ".1dt",       true,         "the data range, features; all is a table of 4096 entries",
             &knowsTable,  &readTable,   &writeTable};
 }
 

@@ -79,8 +79,9 @@ ReadTf readInviwo(const ForeignFile& file) {
     constexpr double kNone = std::numeric_limits<double>::max();
     const double lo = contentOf(xml, holder, "maskMin", -kNone), hi = contentOf(xml, holder, "maskMax", kNone);
     mask(curves, lo, hi);
-    ReadTf read = tfOfCurves(curves, isRelative ? std::optional(ValueRange{0, 1}) : std::nullopt, file.path());
-    if (isRelative) read.notices.push_back(noDomainNotice());
+    const std::optional<ValueRange> positions = isRelative ? std::optional(ValueRange{0, 1}) : std::nullopt;
+    ReadTf read = tfOfCurves(curves, positions, file.path());
+    read.positions = positions;
     read.length = kInviwoLength;
     return read;
 }
@@ -105,7 +106,8 @@ WrittenTf writeInviwo(const TfToWrite& tf) {
 } // namespace
 
 TfFormat inviwoFormat() {
-    return {"inviwo", "Inviwo", ".itf", true, "features", &knowsInviwo, &readInviwo, &writeInviwo};
+    return {"inviwo",    "Inviwo",    "a transfer function of Inviwo", ".itf", true, "features", &knowsInviwo,
+            &readInviwo, &writeInviwo};
 }
 
 } // namespace pellucid

@@ -69,7 +69,8 @@ ReadTf readMap(const ForeignFile& file) {
             addSide(xml, point, "Right", x, curves);
     }
     ReadTf read = tfOfCurves(curves, ValueRange{0, 1}, file.path());
-    read.notices.push_back(noDomainNotice());
+    read.positions = ValueRange{0, 1};
+    read.spansData = true;
     return read;
 }
 
@@ -84,7 +85,7 @@ std::string sideText(const char* key, const ControlPoint& p) {
 }
 
 WrittenTf writeMap(const TfToWrite& tf) {
-    const std::vector<ControlPoint> points = tf.points({});
+    const std::vector<ControlPoint> points = tf.overData().points({});
     std::string folders;
     std::size_t count = 0;
     for (std::size_t i = 0; i < points.size(); ++count) {
@@ -110,6 +111,7 @@ WrittenTf writeMap(const TfToWrite& tf) {
 TfFormat itkSnapFormat() {
     return {"itksnap",
             "ITK-SNAP colour map",
+            "a colour map of ITK-SNAP",
             ".itksnap.xml",
             true,
             "the data range, features; opacities and colours have 256 steps",

@@ -75,8 +75,9 @@ WrittenTf writeMitk(const TfToWrite& tf) {
 } // namespace
 
 TfFormat mitkFormat() {
-    return {"mitk",     "MITK",    ".mitk.xml", true, "features, unit distance (opacities are for 1 mm)",
-            &knowsMitk, &readMitk, &writeMitk};
+    return {"mitk",      "MITK",    "a transfer function of MITK",
+            ".mitk.xml", true,      "features, unit distance (opacities are for 1 mm)",
+            &knowsMitk,  &readMitk, &writeMitk};
 }
 
 } // namespace pellucid

@@ -69,7 +69,7 @@ ReadTf readNiivue(const ForeignFile& file) {
     if (isPlaced)
         read.tf.range = ValueRange{map["min"].number(), map["max"].number()};
     else
-        read.notices.push_back(noDomainNotice());
+        read.positions = ValueRange{0, 1};
     keepAs(read.tf, "niivue", map.unknownKeys({"min", "max", "R", "G", "B", "A", "I"}));
     read.tf.validate();
     return read;
@@ -109,6 +109,7 @@ WrittenTf writeNiivue(const TfToWrite& tf) {
 TfFormat niivueFormat() {
     return {"niivue",
             "niivue colour map",
+            "a colour map of niivue",
             ".niivue.json",
             true,
             "features; all is a table of 256 entries with 256 steps",

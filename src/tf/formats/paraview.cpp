@@ -72,6 +72,8 @@ TfCurves curvesOf(const JsonValue& preset) {
     return curves;
 }
 
+std::vector<std::string> namesIn(const ForeignFile& file) { return presetNames(file, isPreset); }
+
 ReadTf readPreset(const ForeignFile& file) {
     const PresetChoice choice = presetOf(file, isPreset);
     const JsonValue& preset = choice.preset;
@@ -81,7 +83,7 @@ ReadTf readPreset(const ForeignFile& file) {
     const TfCurves curves = curvesOf(preset);
     const std::optional<ValueRange> positions = paraViewPositions(curves);
     ReadTf read = tfOfCurves(curves, positions, file.path());
-    if (positions) read.notices.push_back(noDomainNotice());
+    read.positions = positions;
     read.length = kDefaultLength;
     if (preset.has(kUnitKey)) read.length = {OpacityLength::Kind::World, preset[kUnitKey].number(1e-30, 1e30)};
     read.notices.insert(read.notices.begin(), choice.notices.begin(), choice.notices.end());
@@ -139,13 +141,14 @@ json paraViewPreset(const TransferFunction& tf, const ValueRange& window, const 
 TfFormat paraViewFormat() {
     return {"paraview",
             "ParaView preset",
+            "a ParaView preset",
             kParaViewSuffix,
             true,
             "features; opacities hold for ParaView's default unit distance",
             &knowsPreset,
             &readPreset,
             &writePreset,
-            true};
+            &namesIn};
 }
 
 } // namespace pellucid

@@ -26,6 +26,12 @@ std::vector<XmlElement> mapsIn(const ForeignFile& file) {
 
 bool knowsMaps(const ForeignFile& file) { return file.isXml() && !mapsIn(file).empty(); }
 
+std::vector<std::string> namesIn(const ForeignFile& file) {
+    std::vector<std::string> names;
+    for (const XmlElement& e : mapsIn(file)) names.emplace_back(e.attribute("name").value());
+    return distinctNames(std::move(names));
+}
+
 ColorSpace spaceOf(const XmlDocument& xml, const XmlElement& map) {
     const std::string space = lowerCase(map.attribute("space").value());
     if (space.empty()) return ColorSpace::Rgb;
@@ -55,15 +61,14 @@ TfCurves curvesOf(const XmlDocument& xml, const XmlElement& map) {
 ReadTf readMaps(const ForeignFile& file) {
     const std::vector<XmlElement> maps = mapsIn(file);
     if (maps.empty()) throw FileError("there is no ColorMap in it", file.path(), "give colour maps of ParaView");
-    std::vector<std::string> names, notices;
-    for (const XmlElement& e : maps) names.emplace_back(e.attribute("name").value());
-    const XmlElement map = maps[presetNamed(names, file, notices)];
+    std::vector<std::string> notices;
+    const XmlElement map = maps[presetNamed(namesIn(file), file, notices)];
     if (map.attribute("indexedLookup").as_bool())
         file.xml().fail("its colours are of categories, not of a range of values", map);
     const TfCurves curves = curvesOf(file.xml(), map);
     const std::optional<ValueRange> positions = paraViewPositions(curves);
     ReadTf read = tfOfCurves(curves, positions, file.path());
-    if (positions) read.notices.push_back(noDomainNotice());
+    read.positions = positions;
     read.length = {OpacityLength::Kind::ParaView, 1};
     read.notices.insert(read.notices.begin(), notices.begin(), notices.end());
     return read;
@@ -86,13 +91,14 @@ WrittenTf writeMap(const TfToWrite& tf) {
 TfFormat paraViewXmlFormat() {
     return {"paraview-xml",
             "ParaView colour map, older XML",
+            "an older ParaView colour map (XML)",
             ".xml",
             false,
             "opacities, features",
             &knowsMaps,
             &readMaps,
             &writeMap,
-            true};
+            &namesIn};
 }
 
 } // namespace pellucid

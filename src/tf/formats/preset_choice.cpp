@@ -1,6 +1,8 @@
 #include "tf/formats/preset_choice.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +11,17 @@
 #include "tf/formats/foreign_file.h"
 
 namespace pellucid {
+
+std::vector<std::string> distinctNames(std::vector<std::string> names) {
+    std::set<std::string> taken;
+    std::map<std::string, int> again; // how often each has come up
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string own = names[i].empty() ? "preset " + std::to_string(i + 1) : names[i];
+        names[i] = own;
+        while (!taken.insert(names[i]).second) names[i] = own + " (" + std::to_string(++again[own] + 1) + ")";
+    }
+    return names;
+}
 
 std::size_t presetNamed(const std::vector<std::string>& names, const ForeignFile& file,
                         std::vector<std::string>& notices) {
@@ -29,7 +42,9 @@ std::size_t presetNamed(const std::vector<std::string>& names, const ForeignFile
     return static_cast<std::size_t>(found - names.begin());
 }
 
-PresetChoice presetOf(const ForeignFile& file, bool (*isPreset)(const nlohmann::json&)) {
+namespace {
+
+std::vector<JsonValue> presetsIn(const ForeignFile& file, bool (*isPreset)(const nlohmann::json&)) {
     const JsonValue document(file.json(), file.path());
     std::vector<JsonValue> presets;
     if (document.json().is_array()) {
@@ -39,11 +54,26 @@ PresetChoice presetOf(const ForeignFile& file, bool (*isPreset)(const nlohmann::
         presets.push_back(document);
     }
     if (presets.empty()) document.fail("there is no preset in it", "give a list of presets");
+    return presets;
+}
+
+std::vector<std::string> namesOf(const std::vector<JsonValue>& presets) {
     std::vector<std::string> names;
     for (const JsonValue& preset : presets)
         names.push_back(preset.has("Name") && preset["Name"].json().is_string() ? preset["Name"].text() : "");
+    return distinctNames(std::move(names));
+}
+
+} // namespace
+
+std::vector<std::string> presetNames(const ForeignFile& file, bool (*isPreset)(const nlohmann::json&)) {
+    return namesOf(presetsIn(file, isPreset));
+}
+
+PresetChoice presetOf(const ForeignFile& file, bool (*isPreset)(const nlohmann::json&)) {
+    const std::vector<JsonValue> presets = presetsIn(file, isPreset);
     PresetChoice choice{presets.front(), {}};
-    choice.preset = presets[presetNamed(names, file, choice.notices)];
+    choice.preset = presets[presetNamed(namesOf(presets), file, choice.notices)];
     return choice;
 }
 

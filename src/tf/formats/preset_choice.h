@@ -1,4 +1,4 @@
-// One of several transfer functions in a JSON file.
+// One of several transfer functions in a file.
 #pragma once
 
 #include <string>
@@ -19,7 +19,13 @@ struct PresetChoice {
 /// Throws Error naming all where none is called so.
 PresetChoice presetOf(const ForeignFile& file, bool (*isPreset)(const nlohmann::json&));
 
-/// The same of names alone: which one is meant. `notices` gets what is to be said.
+/// Their names, as distinctNames() has them. Throws Error where there is none.
+std::vector<std::string> presetNames(const ForeignFile& file, bool (*isPreset)(const nlohmann::json&));
+
+/// Names by which each can be asked for: what has none is "preset 2", counted from 1, and a second "a" is "a (2)".
+std::vector<std::string> distinctNames(std::vector<std::string> names);
+
+/// The same as presetOf() of distinct names alone: which one is meant. `notices` gets what is to be said.
 std::size_t presetNamed(const std::vector<std::string>& names, const ForeignFile& file,
                         std::vector<std::string>& notices);
 

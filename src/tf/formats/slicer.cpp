@@ -153,7 +153,14 @@ WrittenTf writeProperty(const TfToWrite& tf) {
 } // namespace
 
 TfFormat slicerFormat() {
-    return {"slicer",      "3D Slicer volume property", ".vp.json", true, "features", &knowsProperty, &readProperty,
+    return {"slicer",
+            "3D Slicer volume property",
+            "a volume property of 3D Slicer",
+            ".vp.json",
+            true,
+            "features",
+            &knowsProperty,
+            &readProperty,
             &writeProperty};
 }
 

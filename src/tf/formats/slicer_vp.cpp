@@ -77,6 +77,7 @@ WrittenTf writeLines(const TfToWrite& tf) {
 TfFormat slicerVpFormat() {
     return {"slicer-vp",
             "3D Slicer, older volume property",
+            "an older volume property of 3D Slicer",
             ".vp",
             true,
             "features, unit distance (opacities are for 1 mm)",

@@ -25,6 +25,12 @@ std::vector<XmlElement> propertiesIn(const ForeignFile& file) {
 
 bool knowsPresets(const ForeignFile& file) { return file.isXml() && !propertiesIn(file).empty(); }
 
+std::vector<std::string> namesIn(const ForeignFile& file) {
+    std::vector<std::string> names;
+    for (const XmlElement& e : propertiesIn(file)) names.emplace_back(e.attribute("name").value());
+    return distinctNames(std::move(names));
+}
+
 SlicerLook lookOf(const XmlDocument& xml, const XmlElement& e, const std::string& where) {
     SlicerLook look;
     look.interpolation = xml.numberOr(e, "interpolation", 1) == 0 ? 0 : 1;
@@ -41,8 +47,8 @@ ReadTf readPresets(const ForeignFile& file) {
     const std::vector<XmlElement> properties = propertiesIn(file);
     if (properties.empty())
         throw FileError("there is no volume property in it", file.path(), "give presets of 3D Slicer");
-    std::vector<std::string> names, notices;
-    for (const XmlElement& e : properties) names.emplace_back(e.attribute("name").value());
+    const std::vector<std::string> names = namesIn(file);
+    std::vector<std::string> notices;
     const std::size_t which = presetNamed(names, file, notices);
     const XmlElement e = properties[which];
     const std::string where = file.path() + ", preset " + inQuotes(names[which]);
@@ -80,9 +86,16 @@ WrittenTf writePresets(const TfToWrite& tf) {
 } // namespace
 
 TfFormat slicerXmlFormat() {
-    return {
-        "slicer-xml",  "3D Slicer presets", ".xml",        false, "features, unit distance (opacities are for 1 mm)",
-        &knowsPresets, &readPresets,        &writePresets, true};
+    return {"slicer-xml",
+            "3D Slicer presets",
+            "presets of 3D Slicer",
+            ".xml",
+            false,
+            "features, unit distance (opacities are for 1 mm)",
+            &knowsPresets,
+            &readPresets,
+            &writePresets,
+            &namesIn};
 }
 
 } // namespace pellucid

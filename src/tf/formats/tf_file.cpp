@@ -36,8 +36,12 @@ struct PartOfFile {
     std::string path, part;
 };
 PartOfFile partOf(const std::string& path) {
-    const std::size_t mark = path.rfind('#');
-    if (mark == std::string::npos || exists(path)) return {path, {}};
+    if (exists(path)) return {path, {}};
+    const std::size_t last = path.rfind('#');
+    if (last == std::string::npos) return {path, {}};
+    std::size_t mark = last; // names of files and of presets may have others
+    while (mark > 0 && mark != std::string::npos && !exists(path.substr(0, mark))) mark = path.rfind('#', mark - 1);
+    if (mark == 0 || mark == std::string::npos) mark = last;
     return {path.substr(0, mark), path.substr(mark + 1)};
 }
 
@@ -84,11 +88,21 @@ ReadTf openTfFile(const std::string& path) {
     const PartOfFile of = partOf(path);
     const ForeignFile file(of.path, readText(of.path), of.part);
     const TfFormat& format = tfFormatOf(file);
-    if (!of.part.empty() && !format.holdsSeveral)
+    if (!of.part.empty() && format.names == nullptr)
         throw FileError("it holds one transfer function, and none that is called " + inQuotes(of.part), of.path,
                         "leave out # and what follows it");
     return format.read(file);
 }
+
+std::vector<std::string> tfNamesIn(const std::string& path) {
+    const ForeignFile file(path, readText(path));
+    const TfFormat& format = tfFormatOf(file);
+    std::vector<std::string> names;
+    if (format.names != nullptr) names = format.names(file);
+    return names.size() > 1 ? names : std::vector<std::string>{};
+}
+
+std::string fileOfTf(const std::string& path) { return partOf(path).path; }
 
 TransferFunction readTfFile(const std::string& path) { return openTfFile(path).tf; }
 
@@ -114,8 +128,16 @@ TransferFunction forVolume(const ReadTf& read, const Geometry& geometry) {
     return withOpacitiesPer(read.tf, geometry.d0() / read.length.inWorld(geometry));
 }
 
-std::vector<std::string> openingNotices(const ReadTf& read, const Geometry& geometry) {
+TransferFunction forVolume(const ReadTf& read, const Volume& data) {
+    TransferFunction tf = forVolume(read, data.geometry());
+    if (read.spansData && data.dataRange().lo < data.dataRange().hi) tf.range = data.dataRange();
+    return tf;
+}
+
+std::vector<std::string> openingNotices(const ReadTf& read, const Geometry& geometry,
+                                        const std::optional<ValueRange>& values) {
     std::vector<std::string> notices = read.notices;
+    if (read.positions) notices.push_back(noDomainNotice(*read.positions, values));
     const double length = read.length.inWorld(geometry), d0 = geometry.d0();
     if (!read.hasOpacities || length == d0) return notices;
     if (read.opensAsItIs)
@@ -140,12 +162,13 @@ bool isWrittenForOthers(const std::string& path) {
 }
 
 std::vector<std::string> writeTfFile(const TransferFunction& tf, const std::optional<ValueRange>& window,
-                                     const std::string& path, const std::optional<Geometry>& volume) {
+                                     const std::string& path, const std::optional<Geometry>& volume,
+                                     const std::optional<ValueRange>& data) {
     if (!isWrittenForOthers(path)) {
         writeTf(tf, path);
         return {};
     }
-    WrittenTf written = writtenTf(*formatOfSuffix(path), {tf, window, volume, presetNameOf(path)});
+    WrittenTf written = writtenTf(*formatOfSuffix(path), {tf, window, volume, presetNameOf(path), data});
     writeTextAtomically(path, written.text);
     return std::move(written.losses);
 }

@@ -23,7 +23,11 @@ bool isForeignTf(const std::string& path);
 /// A file of any format (tf_format.h), told by its suffix or its content. "FILE#NAME" names one of several in it.
 /// Throws Error.
 ReadTf openTfFile(const std::string& path);
-/// The same with opacities as the file has them, whatever length they hold for.
+/// Names of the transfer functions in a file that holds several; none where it holds one. Throws Error.
+std::vector<std::string> tfNamesIn(const std::string& path);
+/// FILE of "FILE#NAME", or `path` itself.
+std::string fileOfTf(const std::string& path);
+/// The same as openTfFile() with opacities as the file has them, whatever length they hold for.
 TransferFunction readTfFile(const std::string& path);
 
 /// What a user may name: "tents:N[:PEAK]", "ramp:N", "preset:NAME" (see presets.h) or a file. Throws Error.
@@ -33,14 +37,20 @@ TransferFunction loadTf(const std::string& specOrPath);
 
 /// What was read, with opacities of the reference length of a volume that lies like this.
 TransferFunction forVolume(const ReadTf& read, const Geometry& geometry);
-/// The notices of what was read, and what is done with its opacities for such a volume.
-std::vector<std::string> openingNotices(const ReadTf& read, const Geometry& geometry);
+/// The same for the present data; what spans them (ReadTf::spansData) gets their range.
+TransferFunction forVolume(const ReadTf& read, const Volume& data);
+/// The notices of what was read, which `values` a file without a range is put on, and what is done with its opacities
+/// for such a volume.
+std::vector<std::string> openingNotices(const ReadTf& read, const Geometry& geometry,
+                                        const std::optional<ValueRange>& values = {});
 
 /// By suffix: for another program (tf_format.h), in the data units of `window`, which the intensities of `tf` refer to,
-/// and for a volume that lies like `volume`, where that is known; anything else as *.tf.json. Through a temporary file
-/// beside `path` that is renamed. Returns what the format cannot say, each a sentence without a full stop.
+/// and for a volume that lies like `volume` and has the values `data`, where they are known; anything else as
+/// *.tf.json. Through a temporary file beside `path` that is renamed. Returns what the format cannot say, each a
+/// sentence without a full stop.
 std::vector<std::string> writeTfFile(const TransferFunction& tf, const std::optional<ValueRange>& window,
-                                     const std::string& path, const std::optional<Geometry>& volume = {});
+                                     const std::string& path, const std::optional<Geometry>& volume = {},
+                                     const std::optional<ValueRange>& data = {});
 /// Whether writeTfFile() writes what is made for another program.
 bool isWrittenForOthers(const std::string& path);
 

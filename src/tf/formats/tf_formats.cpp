@@ -14,6 +14,7 @@
 #include "tf/formats/foreign_file.h"
 #include "tf/formats/tf_json.h"
 #include "tf/shown_tf.h"
+#include "tf/tf_range.h"
 
 namespace pellucid {
 
@@ -27,21 +28,6 @@ std::string rangeText(const ValueRange& range) { return exactText(range.lo) + " 
 
 std::string numbered(std::size_t count, const char* one, const char* many) {
     return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-/// What no other program has.
-void addCommonLosses(std::vector<std::string>& losses, const TfToWrite& tf) {
-    const std::vector<Feature>& features = tf.tf().features;
-    if (!features.empty())
-        losses.push_back("names and intervals of " + numbered(features.size(), "feature", "features") +
-                         " are not stored: keep a *.tf.json, too");
-    const auto hidden = static_cast<std::size_t>(std::ranges::count_if(features, &Feature::hidden));
-    if (hidden > 0)
-        losses.push_back(numbered(hidden, "feature", "features") + " that an eye hides " +
-                         (hidden == 1 ? "is" : "are") + " written as transparent");
-    if (!tf.hasRange()) losses.push_back("no data range is known: positions are written as 0 to 1; name a volume");
-    if (!tf.hasVolume())
-        losses.push_back("no volume is known: opacities are converted for 256 x 256 x 256 voxels, 1 apart");
 }
 
 ReadTf readPellucid(const ForeignFile& file) {
@@ -64,7 +50,8 @@ bool isPellucid(const ForeignFile& file) {
 } // namespace
 
 TfFormat pellucidTfFormat() {
-    return {"pellucid", "Pellucid", ".tf.json", true, "nothing", &isPellucid, &readPellucid, &writePellucid};
+    return {"pellucid",    "Pellucid",    "a transfer function of Pellucid", ".tf.json", true, "nothing", &isPellucid,
+            &readPellucid, &writePellucid};
 }
 
 std::span<const TfFormat> tfFormats() {
@@ -96,26 +83,53 @@ const TfFormat& tfFormatOf(const ForeignFile& file) {
     if (known == formats.end() && (file.isJson() || path.ends_with(".json"))) return formats.front();
     if (known == formats.end())
         throw FileError("this is no transfer function of a format that is known", file.path(),
-                        "give one of " + joined(formats, ", ", &TfFormat::title));
+                        "give " + joined(formats, ", ", &TfFormat::inWords));
     return *known;
 }
 
 WrittenTf writtenTf(const TfFormat& format, const TfToWrite& tf) {
     WrittenTf written = format.write(tf);
     if (std::string(format.name) != pellucidTfFormat().name) {
-        std::vector<std::string> losses;
-        addCommonLosses(losses, tf);
+        const std::vector<std::string> losses = commonLosses(tf);
         written.losses.insert(written.losses.begin(), losses.begin(), losses.end());
     }
     return written;
 }
 
+std::vector<std::string> commonLosses(const TfToWrite& tf) {
+    std::vector<std::string> losses;
+    const std::vector<Feature>& features = tf.tf().features;
+    if (!features.empty())
+        losses.push_back("names and intervals of " + numbered(features.size(), "feature", "features") +
+                         " are not stored: keep a *.tf.json, too");
+    const auto hidden = static_cast<std::size_t>(std::ranges::count_if(features, &Feature::hidden));
+    if (hidden > 0)
+        losses.push_back(numbered(hidden, "feature", "features") + " that an eye hides " +
+                         (hidden == 1 ? "is" : "are") + " written as transparent");
+    if (!tf.hasRange()) losses.emplace_back("no data range is known: positions are written as 0 to 1; name a volume");
+    if (!tf.hasVolume())
+        losses.emplace_back("no volume is known: opacities are converted for 256 x 256 x 256 voxels, 1 apart");
+    return losses;
+}
+
 TfToWrite::TfToWrite(const TransferFunction& tf, const std::optional<ValueRange>& window,
-                     const std::optional<Geometry>& volume, std::string name)
+                     const std::optional<Geometry>& volume, std::string name, const std::optional<ValueRange>& data)
     : m_tf(tf), m_name(std::move(name)), m_geometry(volume.value_or(unknownVolume())), m_hasVolume(volume.has_value()) {
     const std::optional<ValueRange> range = tf.range ? tf.range : window;
     m_hasRange = range.has_value() && range->lo < range->hi;
     if (m_hasRange) m_range = *range;
+    if (data && data->lo < data->hi) m_data = data;
+}
+
+TfToWrite TfToWrite::overData() const {
+    if (!m_hasRange || !m_data || *m_data == m_range) return *this;
+    TfToWrite over = *this;
+    TransferFunction shown = shownTf(m_tf); // before features go: an eye hides by them
+    shown.features.clear();
+    shown.range = m_range;
+    over.m_tf = inRange(shown, *m_data);
+    over.m_range = *m_data;
+    return over;
 }
 
 std::vector<ControlPoint> TfToWrite::points(const OpacityLength& length) const {
@@ -165,13 +179,21 @@ void addVtkLosses(std::vector<std::string>& losses, const std::vector<ControlPoi
 }
 
 void addNoDomainLoss(std::vector<std::string>& losses, const TfToWrite& tf, const char* program) {
-    const std::string what = tf.hasRange() ? " spans the values " + rangeText(tf.range()) : " spans the window";
-    losses.push_back("the format has no data range: 0 to 1" + what + ", and " + program +
-                     " lays it over the range of the data");
+    std::string loss =
+        std::string("the format has no data range: ") + program + " lays the curve over all values of the data, ";
+    if (tf.dataRange())
+        loss += rangeText(*tf.dataRange());
+    else if (tf.hasRange())
+        loss += "which are assumed to be " + rangeText(tf.range());
+    else
+        loss += "which 0 to 1 are assumed to stand for";
+    losses.push_back(loss + (tf.dataRange() || tf.hasVolume() ? "" : "; name a volume"));
 }
 
-std::string noDomainNotice() {
-    return "the file gives no data range: its positions 0 to 1 are taken for the ends of the intensity window";
+std::string noDomainNotice(const ValueRange& positions, const std::optional<ValueRange>& values) {
+    return "the file gives no data range: its positions " + rangeText(positions) +
+           (values ? " are put on the values " + rangeText(*values)
+                   : " stand for the ends of whatever range they are put on");
 }
 
 } // namespace pellucid

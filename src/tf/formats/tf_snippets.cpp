@@ -97,9 +97,17 @@ std::string forNapari(const TfToWrite& tf) {
 
 std::span<const TfSnippet> tfSnippets() {
     static const std::array kSnippets{
-        TfSnippet{"paraview", "ParaView", &forParaView}, TfSnippet{"slicer", "3D Slicer", &forSlicer},
-        TfSnippet{"pyvista", "Python (PyVista)", &forPyVista}, TfSnippet{"napari", "Python (napari)", &forNapari}};
+        TfSnippet{"paraview", "ParaView", "ParaView's Python shell", true, &forParaView},
+        TfSnippet{"slicer", "3D Slicer", "3D Slicer's Python console", true, &forSlicer},
+        TfSnippet{"pyvista", "Python (PyVista)", "a Python console with PyVista", true, &forPyVista},
+        TfSnippet{"napari", "Python (napari)", "napari's console", false, &forNapari}};
     return kSnippets;
+}
+
+WrittenTf writtenTf(const TfSnippet& snippet, const TfToWrite& tf) {
+    WrittenTf written{snippet.text(tf), commonLosses(tf)};
+    if (snippet.byVtk) addVtkLosses(written.losses, tf.pointsApart({}));
+    return written;
 }
 
 } // namespace pellucid

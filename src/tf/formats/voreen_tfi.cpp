@@ -161,7 +161,7 @@ ReadTf readVoreen(const ForeignFile& file) {
     read.tf = tfOf(file.xml(), element);
     read.length = kVoreenLength;
     read.opensAsItIs = !element.child(kMark);
-    if (!read.tf.range) read.notices.push_back(noDomainNotice());
+    if (!read.tf.range) read.positions = ValueRange{0, 1};
     return read;
 }
 
@@ -220,7 +220,8 @@ TransferFunction tfFromVoreen(std::string_view text, const std::string& path) {
 TransferFunction readVoreenTf(const std::string& path) { return tfFromVoreen(readText(path), path); }
 
 TfFormat voreenFormat() {
-    return {"voreen",     "Voreen",    ".tfi",      true, "features; opacities and colours have 256 steps",
+    return {"voreen",     "Voreen",    "a transfer function of Voreen",
+            ".tfi",       true,        "features; opacities and colours have 256 steps",
             &knowsVoreen, &readVoreen, &writeVoreen};
 }
 

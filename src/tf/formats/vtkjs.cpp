@@ -16,6 +16,8 @@ bool knowsNothingOfItsOwn(const ForeignFile&) { return false; }
 
 ReadTf readVtkJs(const ForeignFile& file) { return paraViewFormat().read(file); }
 
+std::vector<std::string> namesIn(const ForeignFile& file) { return paraViewFormat().names(file); }
+
 WrittenTf writeVtkJs(const TfToWrite& tf) {
     json preset = presetOfPoints(tf.pointsApart({}), tf.range(), tf.name());
     for (const char* key : {"Points", "Creator", "NanColor"}) preset.erase(key);
@@ -28,8 +30,16 @@ WrittenTf writeVtkJs(const TfToWrite& tf) {
 } // namespace
 
 TfFormat vtkJsFormat() {
-    return {"vtkjs",    "vtk.js preset", ".vtkjs.json", true, "opacities, features", &knowsNothingOfItsOwn,
-            &readVtkJs, &writeVtkJs,     true};
+    return {"vtkjs",
+            "vtk.js preset",
+            "a preset of vtk.js",
+            ".vtkjs.json",
+            true,
+            "opacities, features",
+            &knowsNothingOfItsOwn,
+            &readVtkJs,
+            &writeVtkJs,
+            &namesIn};
 }
 
 } // namespace pellucid
