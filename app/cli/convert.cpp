@@ -43,9 +43,15 @@ Answer run(const Options& o, Progress& progress) {
     if (o.to) return convertTf({*o.to, o.volume}, o.scene, o.out, progress);
     const Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Volume& volume = *opened.scene.volume;
-    std::vector<std::string> notices = opened.sessionNotices;
+    std::vector<std::string> notices = opened.notices();
     const WrittenPart part{.type = o.type};
     TimeSeries& series = *opened.scene.series;
+    if (series.varies() && !o.allFrames && !o.scene.volume.frame) {
+        const int frame = opened.scene.session.frame;
+        notices.push_back("frame " + std::to_string(frame) + " of " + std::to_string(series.size()) + " (" +
+                          series.listing().label(frame) +
+                          ") is written: --all-frames writes all, --frame N another one");
+    }
     const int frames = o.allFrames ? series.size() : 1;
     const JobControl writing = progress.phase("writing");
     const std::vector<std::string> lost =

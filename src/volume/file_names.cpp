@@ -127,7 +127,8 @@ std::optional<NumberedName> numberedName(const std::string& path) {
 }
 
 std::string pathOfUrl(const std::string& text) {
-    constexpr std::string_view kScheme = "file://", kHost = "localhost";
+    constexpr std::string_view kScheme = "file://", kHost = "localhost", kShort = "file:"; // file:/a is file:///a
+    if (text.starts_with("file:/") && !text.starts_with(kScheme)) return percentDecoded(text.substr(kShort.size()));
     if (!text.starts_with(kScheme)) return text;
     std::string_view rest = std::string_view(text).substr(kScheme.size());
     if (rest.starts_with(kHost)) rest.remove_prefix(kHost.size());

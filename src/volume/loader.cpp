@@ -76,14 +76,31 @@ const VolumeFormat* findFormat(const std::string& path) {
     return bySuffix != nullptr ? bySuffix : formatBeside(path);
 }
 
+/// Why a file is no volume, where its suffix says what it is instead.
+std::optional<FileError> problemOfSuffix(const std::string& path) {
+    const auto ofGrid = [&](const std::string& kind) {
+        return FileError("this is a " + kind + " grid of VTK, whose points need not be evenly spaced", path,
+                         "resample it to an image (.vti), as ParaView's filter Resample To Image does");
+    };
+    if (hasOneOf(path, {".vtr", ".pvtr"})) return ofGrid("rectilinear");
+    if (hasOneOf(path, {".vts", ".pvts"})) return ofGrid("structured");
+    if (hasOneOf(path, {".vtu", ".pvtu"})) return ofGrid("unstructured");
+    if (hasOneOf(path, {".bz2", ".xz", ".zst", ".zip", ".7z"}))
+        return FileError("files that are packed as a whole are read where gzip has packed them: .nii.gz, .hdr.gz, "
+                         "headerless data",
+                         path, "unpack it first");
+    if (isLonePicture(path))
+        return FileError("this is a picture: one slice, not a volume", path,
+                         "put all slices into a folder and open that, or save this one as TIFF");
+    return {};
+}
+
 /// Throws FileError where there is none for this suffix.
 const VolumeFormat& formatOf(const std::string& path) {
     if (const VolumeFormat* format = findFormat(path)) return *format;
-    if (isLonePicture(path))
-        throw FileError("this is a picture: one slice, not a volume", path,
-                        "put all slices into a folder and open that, or save this one as TIFF");
+    if (const auto problem = problemOfSuffix(path)) throw *problem;
     const bool named =
-        lowerCase(path).ends_with(".raw") || std::ranges::any_of(formats(), [&](const VolumeFormat& format) {
+        hasOneOf(path, {".raw", ".raw.gz"}) || std::ranges::any_of(formats(), [&](const VolumeFormat& format) {
             return hasOneOf(path, format.sharedSuffixes);
         });
     std::vector<std::string> suffixes;
@@ -240,7 +257,7 @@ bool hasVolumeSuffix(const std::string& path) {
 
 bool mayBeHeaderless(const std::string& path) {
     std::error_code ec;
-    return std::filesystem::is_regular_file(path, ec) && findFormat(path) == nullptr && !isLonePicture(path);
+    return std::filesystem::is_regular_file(path, ec) && findFormat(path) == nullptr && !problemOfSuffix(path);
 }
 
 const std::vector<std::string>& volumeFilePatterns() {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "base/check.h"
@@ -18,6 +19,8 @@
 namespace pellucid {
 
 namespace {
+
+constexpr std::size_t kMostSaid = 20; ///< notices of frames, which may be thousands
 
 const std::vector<VolumeWriter>& writers() {
     static const std::vector<VolumeWriter> kWriters{nrrdWriter(), metaImageWriter(), niftiWriter(),
@@ -44,6 +47,7 @@ struct ValueLosses {
     std::size_t rounded = 0, cut = 0;
     std::size_t invalid = 0;         ///< voxels that are not valid …
     std::optional<double> writtenAs; ///< … and this value in the file, NaN included; empty: what they were
+    std::size_t shared = 0;          ///< valid voxels that are that value, too
     std::optional<double> notSaid;   ///< a value that is missing, which the file does not say
 
     std::vector<std::string> sentences() const {
@@ -53,26 +57,44 @@ struct ValueLosses {
         if (invalid > 0 && writtenAs && std::isnan(*writtenAs))
             all.push_back(voxelsText(invalid) + " without a valid value, and written as NaN");
         else if (invalid > 0 && writtenAs)
-            all.push_back(voxelsText(invalid) + " without a valid value, and written as " + plainText(*writtenAs) +
-                          ": open the file with that as missing value");
+            all.push_back(voxelsText(invalid) + " without a valid value, and written as " + exactText(*writtenAs) +
+                          (shared > 0 ? ", as " + std::to_string(shared) +
+                                            " valid ones are: a type with more values keeps them apart"
+                                      : ": open the file with that as missing value"));
         if (notSaid)
-            all.push_back("the file does not say that " + plainText(*notSaid) +
+            all.push_back("the file does not say that " + exactText(*notSaid) +
                           " is missing: open it with that as missing value");
         return all;
     }
 };
 
-/// A volume in another type. Voxels that are not valid become NaN; where the type has none, its smallest value.
+/// What voxels that are not valid become in a type of whole numbers: the smallest value that no valid voxel has, among
+/// so many; the smallest of all where there is none.
+template <class To>
+To valueForNone(const Volume& volume, const std::vector<To>& values) {
+    constexpr To kLeast = std::numeric_limits<To>::lowest();
+    constexpr std::size_t kMost = sizeof(To) == 1 ? 256 : 65536;
+    std::vector<bool> isTaken(kMost, false);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto n = static_cast<std::uint64_t>(static_cast<std::int64_t>(values[i]) - std::int64_t{kLeast});
+        if (n < kMost && volume.isValid(i)) isTaken[static_cast<std::size_t>(n)] = true;
+    }
+    const auto free = std::ranges::find(isTaken, false);
+    return static_cast<To>(std::int64_t{kLeast} + (free == isTaken.end() ? 0 : free - isTaken.begin()));
+}
+
+/// A volume in another type. Voxels that are not valid become NaN; where the type has none, a value that no other has.
 template <class To>
 Volume converted(const Volume& volume, ValueLosses& lost) {
     constexpr double kLeast = static_cast<double>(std::numeric_limits<To>::lowest());
     constexpr double kMost = static_cast<double>(std::numeric_limits<To>::max());
     constexpr bool kIsFloat = std::is_floating_point_v<To>;
     std::vector<To> values(volume.size());
+    std::size_t invalid = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!volume.isValid(i)) {
-            ++lost.invalid;
-            values[i] = kIsFloat ? std::numeric_limits<To>::quiet_NaN() : std::numeric_limits<To>::lowest();
+            ++invalid;
+            if (kIsFloat) values[i] = std::numeric_limits<To>::quiet_NaN();
             continue;
         }
         const double value = volume.value(i), inRange = std::clamp(value, kLeast, kMost);
@@ -83,10 +105,16 @@ Volume converted(const Volume& volume, ValueLosses& lost) {
         else if (static_cast<double>(values[i]) != value)
             ++lost.rounded;
     }
-    if (!kIsFloat)
-        lost.writtenAs = kLeast;
-    else if (volume.missing())
-        lost.writtenAs = std::numeric_limits<double>::quiet_NaN();
+    lost.invalid += invalid;
+    if constexpr (kIsFloat) {
+        if (volume.missing()) lost.writtenAs = std::numeric_limits<double>::quiet_NaN();
+    } else {
+        if (!lost.writtenAs) lost.writtenAs = static_cast<double>(valueForNone(volume, values)); // of all frames
+        const auto none = static_cast<To>(*lost.writtenAs);
+        for (std::size_t i = 0; i < values.size() && invalid > 0; ++i)
+            if (!volume.isValid(i)) values[i] = none;
+        lost.shared += static_cast<std::size_t>(std::ranges::count(values, none)) - invalid;
+    }
     return {volume.geometry(), SampleArray<To>(std::move(values))};
 }
 
@@ -174,8 +202,13 @@ std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path
     all.times = evenTimes(all.frameTimes, listing.timeUnit);
     if (!all.times && all.frameTimes.size() > 1 && !lowerCase(path).ends_with(".pvd"))
         lost.emplace_back("frames do not follow each other at one step of time: the file does not say when they are");
+    // What reading lost of the first frame has been said where it was opened.
+    std::set<std::string> said(frame->notices.begin(), frame->notices.end());
     all.frame = [&](int n, const JobControl& one) -> const Volume& {
         frame = series.load(n, {one.stop, {}});
+        for (const std::string& notice : frame->notices)
+            if (said.insert(notice).second && said.size() <= kMostSaid)
+                lost.push_back("frame " + std::to_string(n) + ": " + notice);
         return *frame;
     };
     const std::vector<std::string> more = write(std::move(all), path, part, job);

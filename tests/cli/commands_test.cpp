@@ -946,7 +946,8 @@ TEST_CASE("convert writes a volume, or a part of it, in another format", "[cli]"
     CHECK(whole["type"] == w.json({"info", "sample:shells", "--sample-size", "16"})["type"]);
     const json before = w.json({"info", "sample:shells", "--sample-size", "16"}), after = w.json({"info", "a.nii.gz"});
     for (const char* key : {"dims", "spacing", "data_range", "invalid", "type"}) CHECK(after[key] == before[key]);
-    const json part = w.json({"convert", "a.nii.gz", "--region", "2:10,0:16,4:8", "--type", "f64", "--out", "b.vti"});
+    const json part =
+        w.jsonAndNotes({"convert", "a.nii.gz", "--region", "2:10,0:16,4:8", "--type", "f64", "--out", "b.vti"});
     CHECK(part["dims"] == json({8, 16, 4}));
     CHECK(w.json({"info", "b.vti"})["type"] == "f64");
     CHECK(w.json({"info", "b.vti"})["dims"] == json({8, 16, 4}));
@@ -972,6 +973,31 @@ TEST_CASE("convert writes all frames of a series into one file", "[cli]") {
     const Outcome image = w.run({"convert", "v%02d.nrrd", "--all-frames", "--out", "all.vti"});
     CHECK(image.status != 0);
     CHECK_THAT(image.err, Catch::Matchers::Contains(".pvd"));
+}
+
+TEST_CASE("convert says what of the data it did not read", "[cli]") {
+    const Workshop w;
+    const auto said = [&](const Words& words) {
+        const Outcome outcome = w.run(Words{"convert"} + words);
+        CHECK(outcome.status == 0);
+        return outcome.err;
+    };
+    w.write("a.raw", std::string(16 * 16 * 16, 'a') + "b");
+    const Words raw{"a.raw", "--raw", "16,16,16,u8"};
+    CHECK_THAT(said(raw + Words{"--downsample", "2", "--out", "a.nrrd"}),
+               Catch::Matchers::Contains("downsampled by 2 to 8 x 8 x 8 of 16 x 16 x 16 voxels"));
+    CHECK_THAT(said(raw + Words{"--region", "0:4,0:4,0:4", "--out", "b.nrrd"}),
+               Catch::Matchers::Contains("a region of 4 x 4 x 4 of 16 x 16 x 16 voxels"));
+    // Of three components, and of two files, one.
+    w.write("c.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 2 2 2\nkinds: vector domain domain domain\n"
+                      "encoding: raw\n\n" +
+                          std::string(24, 'x'));
+    CHECK_THAT(said({"c.nrrd", "--out", "d.nrrd"}), Catch::Matchers::Contains("component 0 of 3"));
+    w.json({"generate", "vortex", "--size", "8", "--frames", "3", "--out", "v%02d.nrrd"});
+    const std::string one = said({"v%02d.nrrd", "--out", "e.nrrd"});
+    CHECK_THAT(one, Catch::Matchers::Contains("frame 0 of 3") && Catch::Matchers::Contains("--all-frames writes all"));
+    CHECK(said({"v%02d.nrrd", "--frame", "0", "--out", "f.nrrd"}).empty());
+    CHECK(said({"v%02d.nrrd", "--all-frames", "--out", "g.nrrd"}).empty());
 }
 
 TEST_CASE("fields are written in the format that is asked for", "[cli]") {

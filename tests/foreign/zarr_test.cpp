@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <blosc.h>
 #include <lz4.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 #include <zstd.h>
 
 #include "base/memory.h"
@@ -420,6 +422,136 @@ TEST_CASE("a coarser copy in the file is read where one is wanted", "[zarr]") {
     CHECK(one.value(0) == 201);
 }
 
+TEST_CASE("a level of OME-Zarr lies where the file says", "[zarr]") {
+    const TempFolder folder;
+    const std::string path = folder.path("a.zarr");
+    json datasets = json::array();
+    for (int level = 0; level < 2; ++level) {
+        const int size = 8 >> level, f = 1 << level;
+        json metadata = metadata2(nullptr);
+        metadata["shape"] = metadata["chunks"] = {size, size, size};
+        metadata["dtype"] = "|u1";
+        const std::string name = std::to_string(level);
+        write(path + "/" + name + "/.zarray", metadata.dump());
+        write(path + "/" + name + "/0.0.0", std::string(static_cast<std::size_t>(size * size * size), '\1'));
+        const json scale{{"type", "scale"}, {"scale", {f, f, f}}},
+            moved{{"type", "translation"}, {"translation", {10, 10, 10}}};
+        datasets.push_back({{"path", name}, {"coordinateTransformations", {scale, moved}}});
+    }
+    json whole = image();
+    whole["multiscales"][0]["datasets"] = datasets;
+    write(path + "/.zattrs", whole.dump());
+    VolumeSource source = at(path);
+    CHECK(loadVolume(source).geometry().origin == Vec3(10));
+    source.downsample = 2;
+    // Every second voxel, from the first one on: not the means of two, which would lie half a voxel further.
+    CHECK(loadVolume(source).geometry().origin == Vec3(10));
+    CHECK(loadVolume(source).geometry().spacing == Vec3(2));
+    // A translation of all levels says nothing of one: the mean of two voxels is between them.
+    for (json& dataset : whole["multiscales"][0]["datasets"]) dataset["coordinateTransformations"].erase(1);
+    whole["multiscales"][0]["coordinateTransformations"] = {{{"type", "translation"}, {"translation", {10, 10, 10}}}};
+    write(path + "/.zattrs", whole.dump());
+    CHECK(loadVolume(source).geometry().origin == Vec3(10.5));
+}
+
+namespace {
+
+/// The places along an axis: an array of one axis, with a unit.
+void writeCoordinates(const std::string& path, const std::vector<double>& places, const std::string& units) {
+    json metadata = metadata2(nullptr);
+    metadata["shape"] = metadata["chunks"] = {places.size()};
+    metadata["dtype"] = "<f8";
+    write(path + "/.zarray", metadata.dump());
+    write(path + "/.zattrs", json{{"units", units}}.dump());
+    write(path + "/0", bytesOf(places));
+}
+
+/// Coordinates of kDims: x 10, 11, …; y 20, 22, …; z 5, 8, ….
+void writePlaces(const std::string& group) {
+    for (int a = 0; a < 3; ++a) {
+        std::vector<double> places;
+        for (int i = 0; i < kDims[a]; ++i) places.push_back(Vec3(10, 20, 5)[a] + i * (a + 1));
+        writeCoordinates(group + "/" + "xyz"[a], places, "mm");
+    }
+}
+
+} // namespace
+
+TEST_CASE("arrays of xarray are placed and unpacked as those of NetCDF are", "[zarr]") {
+    const TempFolder folder;
+    const std::string path = folder.path("a.zarr");
+    write(path + "/.zgroup", R"({"zarr_format": 2})");
+    writeArray(path + "/temp", metadata2(nullptr), asItIs);
+    writePlaces(path);
+    // Python writes NaN without quotes; in a text it stays what it is.
+    write(path + "/temp/.zattrs", R"({"_ARRAY_DIMENSIONS": ["z", "y", "x"], "scale_factor": 0.5, "add_offset": 10,
+        "_FillValue": 101, "missing_value": NaN, "limits": [-Infinity, Infinity], "note": "a \" NaN, Infinity"})");
+    const Volume volume = loadVolume(at(path));
+    REQUIRE(volume.dims() == kDims);
+    CHECK(volume.geometry().spacing == Vec3(1, 2, 3));
+    CHECK(volume.geometry().origin == Vec3(10, 20, 5));
+    CHECK(volume.value(voxelIndex(kDims, 0, 0, 0)) == 10);
+    CHECK(volume.value(voxelIndex(kDims, 3, 2, 1)) == 0.5 * 1203 + 10);
+    CHECK(volume.invalidCount() == 1); // 101
+    CHECK_FALSE(volume.isValid(voxelIndex(kDims, 1, 1, 0)));
+    CHECK(volume.notices.empty());
+
+    // The value of chunks that are not stored is missing where xarray has written it, and only there.
+    json metadata = metadata2(nullptr);
+    metadata["fill_value"] = 101;
+    write(path + "/temp/.zarray", metadata.dump());
+    write(path + "/temp/.zattrs", R"({"_ARRAY_DIMENSIONS": ["z", "y", "x"]})");
+    CHECK(loadVolume(at(path)).invalidCount() == 1);
+    write(path + "/temp/.zattrs", "{}");
+    CHECK(loadVolume(at(path)).invalidCount() == 0);
+    CHECK(loadVolume(at(path)).geometry().spacing == Vec3(1)); // which places are its axes', nobody knows
+    // A name that leads out of the folder is none.
+    writeCoordinates(folder.path("x"), {0, 7, 14, 21, 28, 35, 42}, "mm");
+    write(path + "/temp/.zattrs", R"({"_ARRAY_DIMENSIONS": ["z", "y", "../x"]})");
+    CHECK(loadVolume(at(path)).geometry().spacing == Vec3(1, 2, 3)); // x: 1, as nothing says more
+    // Coordinates that cannot be read are passed over with a word.
+    json texts = metadata2(nullptr);
+    texts["shape"] = texts["chunks"] = {kDims.z};
+    texts["dtype"] = "<U5";
+    write(path + "/z/.zarray", texts.dump());
+    write(path + "/temp/.zattrs", R"({"_ARRAY_DIMENSIONS": ["z", "y", "x"]})");
+    CHECK(hasNotice(loadVolume(at(path)), "the coordinates along 'z' are passed over"));
+}
+
+TEST_CASE("times of xarray are steps, and version 3 names axes and missing values in its way", "[zarr]") {
+    const TempFolder folder;
+    const std::string path = folder.path("a.zarr");
+    json metadata = metadata3(json::array({kBytes}));
+    metadata["shape"] = {2, 2, 2, 3};
+    metadata["data_type"] = "float32";
+    metadata["chunk_grid"]["configuration"]["chunk_shape"] = {1, 1, 2, 3};
+    metadata["dimension_names"] = {"time", "z", "y", "x"};
+    // The eight bytes of the number −999, in base64.
+    metadata["attributes"] = {{"_FillValue", "AAAAAAA4j8A="}};
+    write(path + "/zarr.json", json{{"zarr_format", 3}, {"node_type", "group"}}.dump());
+    write(path + "/temp/zarr.json", metadata.dump());
+    for (const int t : {0, 1}) // the layer z = 1 is not stored: 0, the fill value
+        write(path + "/temp/c/" + std::to_string(t) + "/0/0/0",
+              bytesOf<float>({static_cast<float>(6 * t + 1), 2, 3, 4, 5, -999}));
+    writeCoordinates(path + "/time", {0, 6}, "hours since 2000-01-01");
+    writeCoordinates(path + "/x", {0, 0.5, 1}, "km");
+    writeCoordinates(path + "/y", {100, 0}, "m");
+    const FileContents contents = contentsOf(at(path));
+    CHECK(contents.steps == 2);
+    CHECK(contents.times == std::vector<double>{0, 6});
+    CHECK(contents.timeUnit == "h");
+    VolumeSource source = at(path);
+    source.step = 1;
+    const Volume volume = loadVolume(source);
+    REQUIRE(volume.dims() == Int3(3, 2, 2));
+    CHECK(volume.value(0) == 7);
+    CHECK(volume.value(6) == 0);
+    CHECK(volume.invalidCount() == 1);
+    CHECK(volume.geometry().spacing.x == 0.5); // in km, as y is: its places go down by 100 m
+    CHECK(volume.geometry().spacing.y == Approx(0.1));
+    CHECK(volume.geometry().directions[1] == Vec3(0, -1, 0));
+}
+
 TEST_CASE("of several images in a folder one is chosen", "[zarr]") {
     const TempFolder folder;
     const std::string path = folder.path("a.zarr");
@@ -468,8 +600,10 @@ TEST_CASE("what Zarr cannot be is said", "[zarr]") {
     CHECK_THAT(with(metadata), Contains("not supported"));
     metadata.erase("shape");
     CHECK_THAT(with(metadata), Contains("'shape' is missing"));
-    write(path + "/.zarray", "{");
-    CHECK_THAT(errorOf(at(path)), Contains("no JSON object"));
+    for (const char* broken : {"{", "{\"a\": NaN", "{\"a\": nan}", "{\"a\": \"NaN}"}) {
+        write(path + "/.zarray", broken);
+        CHECK_THAT(errorOf(at(path)), Contains("no JSON object"));
+    }
     // Names of chunks that lead out of the folder.
     CHECK_THAT(with(metadata2(nullptr, "/../")), Contains("not separated by"));
     // 2^30 · 2^30 · 2^4 chunks in a shard are 2^64, which 64 bits count as none.
@@ -492,4 +626,20 @@ TEST_CASE("what Zarr cannot be is said", "[zarr]") {
     outside["multiscales"][0]["datasets"][0]["path"] = "../a.zarr";
     write(other + "/.zattrs", outside.dump());
     CHECK_THAT(errorOf(at(other)), Contains("leads out of its image"));
+}
+
+TEST_CASE("a limit on the size of files is not taken for a lack of memory", "[zarr]") {
+    const TempFolder folder;
+    const std::string path = folder.path("a.zarr");
+    writeArray(path, metadata2(nullptr), asItIs);
+    rlimit usual{};
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &usual) == 0);
+    const auto before = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit none{0, usual.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &none) == 0);
+    const std::string error = errorOf(at(path));
+    ::setrlimit(RLIMIT_FSIZE, &usual);
+    std::signal(SIGXFSZ, before);
+    CHECK_THAT(error, Contains("the limit on the size of files") && Contains("ulimit -f"));
+    requireValues(loadVolume(at(path)));
 }

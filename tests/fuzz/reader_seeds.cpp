@@ -63,6 +63,9 @@ void addZarr(Seeds& seeds) {
     const json turn{{"name", "transpose"}, {"configuration", {{"order", {2, 0, 1}}}}};
     add(image(false), zarrV3("uint8", {turn, bytes}, {2, 3, 4}), kChunk);
     add(image(false), zarrV3("int16", {bytes, {{"name", "gzip"}}}, {2, 3, 2}), test::gzipped(kChunk));
+    json packed = zarrV3("int16", json::array({bytes}), {2, 3, 2}); // an array by itself, as xarray writes it
+    packed["attributes"] = {{"scale_factor", 0.5}, {"add_offset", -2}, {"_FillValue", 7}, {"valid_range", {-5, 30000}}};
+    add({{"creator", "a test"}}, packed, kChunk);
     const json shards{{"name", "sharding_indexed"},
                       {"configuration",
                        {{"chunk_shape", {2, 3, 2}},

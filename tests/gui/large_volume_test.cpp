@@ -1,6 +1,8 @@
 // A volume that was opened coarser: the part that clipping leaves, in all its voxels, and back.
 #include "gui_support.h"
 
+#include <algorithm>
+
 #include <QAction>
 #include <QTemporaryDir>
 
@@ -46,4 +48,25 @@ TEST_CASE("what the clip box leaves opens at full resolution, and the whole volu
     w.document().undo();
     REQUIRE(waitFor([&] { return w.document().volume()->dims() == Int3(8, 8, 8); }));
     w.settle();
+}
+
+TEST_CASE("a coarser copy that is saved is said to be one, though its note was closed", "[window][large]") {
+    const QTemporaryDir folder;
+    VolumeSource source;
+    source.path = folder.filePath("a.nrrd").toStdString();
+    std::vector<std::uint8_t> values;
+    for (int i = 0; i < 16 * 16 * 16; ++i) values.push_back(static_cast<std::uint8_t>(i % 251));
+    writeNrrd(Volume({{16, 16, 16}}, values), source.path);
+    source.downsample = 2;
+    OpenWindow w;
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return w.document().volume()->dims() == Int3(8, 8, 8); }));
+    w.settle();
+    w.services().notices().clear();
+    QSignalSpy saved(&w.saving(), &SaveController::volumeSaved);
+    w.saving().saveVolume({folder.filePath("b.nrrd")});
+    REQUIRE(waitFor([&] { return saved.count() == 1; }));
+    CHECK(std::ranges::any_of(w.services().notices().all(), [](const Notice& notice) {
+        return notice.text.contains("downsampled by 2 to 8 x 8 x 8 of 16 x 16 x 16 voxels");
+    }));
 }

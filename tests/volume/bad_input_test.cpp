@@ -549,3 +549,17 @@ TEST_CASE("a data file that is no file is refused without being opened", "[bad-i
                    Contains(expected));
     }
 }
+
+TEST_CASE("suffixes of what is no volume say what to do", "[bad-input]") {
+    const TempFolder folder;
+    const auto said = [&](const std::string& name) {
+        const std::string path = folder.write(name, std::string(100, '\1'));
+        CHECK(mayBeHeaderless(path) == (name == "a.raw.gz"));
+        return errorOf(path);
+    };
+    CHECK_THAT(said("a.vtr"), Contains("rectilinear grid") && Contains(".vti"));
+    CHECK_THAT(said("a.pvts"), Contains("structured grid"));
+    CHECK_THAT(said("a.nii.bz2"), Contains("unpack it first"));
+    CHECK_THAT(said("a.zip"), Contains("unpack it first"));
+    CHECK_THAT(said("a.raw.gz"), Contains("headerless data needs its layout"));
+}

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/full_disk.h"
+#include "support/notices.h"
 #include "support/temp_folder.h"
 #include "volume/file_contents.h"
 #include "volume/loader.h"
@@ -797,7 +798,38 @@ TEST_CASE("headers say in which unit lengths are", "[formats]") {
     };
     CHECK(load(nrrd(R"("cm" "cm" "cm")")).geometry().spacing == Vec3(20, 20, 40));
     CHECK(load(nrrd("um um um")).geometry().origin == Vec3(1e-3, 0, 3e-3)); // without quotes
+    for (const char* units : {R"("microns" "microns" "microns")", "\"\u00b5m\" \"um\" \"Micrometer\"",
+                              "\"micrometre\" \"micrometres\" \"\u03bcm\""}) {
+        INFO(units);
+        CHECK(load(nrrd(units)).geometry().spacing == Vec3(2e-3, 2e-3, 4e-3));
+    }
+    CHECK(load(nrrd(R"("in" "inch" "inches")")).geometry().spacing == Vec3(2 * 25.4, 2 * 25.4, 4 * 25.4));
+    CHECK(load(nrrd(R"("meters" "m" "metre")")).geometry().spacing == Vec3(2000, 2000, 4000));
+    CHECK(load(nrrd(R"("mm" "mm" "mm")")).notices.empty());
+    const Volume furlong = load(nrrd(R"("furlong" "furlong" "furlong")"));
+    CHECK(furlong.geometry().spacing == Vec3(2, 2, 4));
+    CHECK(hasNotice(furlong, "the unit of length 'furlong' is not known: millimetres are assumed"));
     CHECK_THROWS_WITH(load(nrrd(R"("mm" "mm" "cm")")), Contains("different units, 'mm' and 'cm'"));
+    CHECK_THROWS_WITH(load(nrrd(R"("mm" "mm" "furlong")")), Contains("different units, 'mm' and 'furlong'"));
+    // Where no patient is, lengths stay in their unit, of which there must be one.
+    const auto plain = [&](const std::string& fields) {
+        return folder.write("b.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n" + fields +
+                                          "\n\n01234567");
+    };
+    for (const std::string space : {"space dimension: 3", "space: 3D-right-handed"}) {
+        INFO(space);
+        const std::string grid = space + "\nspace directions: (2,0,0) (0,2,0) (0,0,4)\nspace units: ";
+        CHECK(load(plain(grid + R"("um" "microns" "um")")).geometry().spacing == Vec3(2, 2, 4));
+        CHECK_THROWS_WITH(load(plain(grid + R"("mm" "mm" "cm")")), Contains("different units, 'mm' and 'cm'"));
+    }
+    CHECK_THROWS_WITH(load(plain(R"(spacings: 2 2 4
+units: "mm" "mm" "cm")")),
+                      Contains("different units, 'mm' and 'cm'"));
+    const Volume mixed = load(plain(R"(spacings: 2 2 4
+units: "mm" "mm" "s")"));
+    CHECK(mixed.geometry().spacing == Vec3(2, 2, 4));
+    CHECK(hasNotice(mixed, "different units, 'mm' and 's': their numbers are taken as they are"));
+    CHECK(load(plain("spacings: 2 2 4\nunits: \"um\" \"\" \"???\"")).notices.empty());
     const auto mha = [&](const std::string& fields) {
         return folder.write("a.mha", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
                                      "ElementSpacing = 2 2 4\nOffset = 1 0 3\n" +
@@ -806,8 +838,33 @@ TEST_CASE("headers say in which unit lengths are", "[formats]") {
     const Volume micro = load(mha("AnatomicalOrientation = RAI\nDistanceUnits = um\n"));
     CHECK(micro.geometry().spacing == Vec3(2e-3, 2e-3, 4e-3));
     CHECK(micro.geometry().origin == Vec3(1e-3, 0, 3e-3));
-    CHECK(load(mha("DistanceUnits = um\n")).geometry().spacing == Vec3(2, 2, 4)); // no patient: units of the file
-    CHECK_THROWS_WITH(load(mha("AnatomicalOrientation = RAI\nDistanceUnits = inch\n")), Contains("inch"));
+    const Volume ofNobody = load(mha("DistanceUnits = um\n"));
+    CHECK(ofNobody.geometry().spacing == Vec3(2e-3, 2e-3, 4e-3));
+    CHECK(hasNotice(ofNobody, "the header gives lengths in um: shown in mm"));
+    CHECK(load(mha("DistanceUnits = mm\n")).notices.empty());
+    CHECK(load(mha("DistanceUnits = ?\n")).geometry().spacing == Vec3(2, 2, 4));
+    for (const char* anatomy : {"", "AnatomicalOrientation = RAI\n"})
+        CHECK_THROWS_WITH(load(mha(anatomy + std::string("DistanceUnits = furlong\n"))), Contains("furlong"));
+}
+
+TEST_CASE("MetaImage says what the stored numbers mean", "[formats]") {
+    const TempFolder folder;
+    const auto mha = [&](const std::string& fields) {
+        return load(folder.write("a.mha", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n" +
+                                              fields + "ElementDataFile = LOCAL\n01234567"));
+    };
+    const Volume scaled = mha("ElementToIntensityFunctionSlope = 0.5\nElementToIntensityFunctionOffset = -3\n");
+    CHECK(scaled.value(0) == 0.5 * '0' - 3);
+    CHECK(scaled.value(7) == 0.5 * '7' - 3);
+    CHECK(hasNotice(scaled, "values are 0.5 x what the file stores + -3"));
+    CHECK(mha("ElementToIntensityFunctionOffset = 2\n").value(1) == '1' + 2);
+    const Volume same = mha("ElementToIntensityFunctionSlope = 1\nElementToIntensityFunctionOffset = 0\n");
+    CHECK(same.sampleType() == SampleType::U8);
+    CHECK(same.notices.empty());
+    const Volume none = mha("ElementToIntensityFunctionSlope = 0\n");
+    CHECK(none.value(7) == '7');
+    CHECK(hasNotice(none, "would make all values the same"));
+    CHECK_THROWS_WITH(mha("ElementToIntensityFunctionSlope = inf\n"), Contains("ElementToIntensityFunctionSlope"));
 }
 
 TEST_CASE("names of data files may look like lists", "[formats]") {

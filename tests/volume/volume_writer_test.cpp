@@ -125,13 +125,41 @@ TEST_CASE("another type says what it rounds and cuts", "[writer]") {
     REQUIRE(said.size() == 3);
     CHECK_THAT(said[0], Contains("2 voxels are rounded"));
     CHECK_THAT(said[1], Contains("3 voxels are cut"));
-    CHECK_THAT(said[2], Contains("1 voxel is without a valid value, and written as 0"));
+    // 0, 1 and 255 are values of valid voxels.
+    CHECK_THAT(said[2], Contains("1 voxel is without a valid value, and written as 2: open the file with that"));
     const Volume read = load(folder.path("a.nrrd"));
-    const int expected[] = {0, 0, 1, 255, 255, 255, 255, 0};
+    const int expected[] = {0, 0, 1, 255, 255, 255, 255, 2};
     for (std::size_t i = 0; i < 8; ++i) CHECK(read.value(i) == expected[i]);
     const std::vector<std::uint8_t> bytes{0, 1, 2, 3, 4, 5, 6, 255};
     CHECK(writeVolume(Volume(g, SampleArray<std::uint8_t>(bytes)), folder.path("b.nii"), {SampleType::F64}).empty());
     CHECK(load(folder.path("b.nii")).value(7) == 255);
+}
+
+TEST_CASE("voxels without a valid value get one that no other voxel has", "[writer]") {
+    const TempFolder folder;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const auto said = [&](const Int3& dims, std::vector<float> values, SampleType type) {
+        Geometry g;
+        g.dims = dims;
+        return writeVolume(Volume(g, SampleArray<float>(std::move(values))), folder.path("a.nrrd"), {type}).back();
+    };
+    CHECK_THAT(said({2, 2, 1}, {5, 6, nan, 7}, SampleType::U8), Contains("written as 0: open"));
+    CHECK_THAT(said({2, 2, 1}, {0, 1, nan, 3}, SampleType::U8), Contains("written as 2: open"));
+    CHECK_THAT(said({2, 2, 1}, {-128, -127, nan, 3}, SampleType::I8), Contains("written as -126: open"));
+    CHECK_THAT(said({2, 2, 1}, {-32768, 0, nan, 3}, SampleType::I16), Contains("written as -32767: open"));
+    CHECK_THAT(said({2, 2, 1}, {0, 4294967040.0f, nan, 3}, SampleType::U32), Contains("written as 1: open"));
+    CHECK_THAT(said({2, 2, 1}, {-2147483648.0f, 0, nan, 3}, SampleType::I32), Contains("written as -2147483647: open"));
+    VolumeSource source;
+    source.path = folder.path("a.nrrd");
+    source.missing = -2147483647;
+    CHECK(loadVolume(source).invalidCount() == 1);
+    // All 256 values, and 0 twice.
+    std::vector<float> all(258);
+    for (std::size_t i = 0; i < 257; ++i) all[i] = static_cast<float>(i % 256);
+    all.back() = nan;
+    CHECK_THAT(said({258, 1, 1}, all, SampleType::U8),
+               Contains("1 voxel is without a valid value, and written as 0, as 2 valid ones are: a type with more"));
+    CHECK_THAT(said({258, 1, 1}, all, SampleType::U16), Contains("written as 256: open"));
 }
 
 TEST_CASE("a volume that cannot be written leaves nothing", "[writer]") {
@@ -208,6 +236,21 @@ VolumeSource sourceOf(const std::string& path) {
 }
 
 } // namespace
+
+TEST_CASE("what reading lost of single frames is said where all are written", "[writer]") {
+    const TempFolder folder;
+    SeriesListing listing;
+    listing.frames.resize(3);
+    TimeSeries series(listing, [](int frame, const JobControl&) {
+        Geometry g;
+        g.dims = {2, 1, 1};
+        Volume volume(g, SampleArray<std::uint8_t>(std::vector<std::uint8_t>{0, 1}));
+        volume.notices.emplace_back("component 0 of 3 is shown"); // said of the first one where it was opened
+        if (frame == 2) volume.notices.emplace_back("two layers are missing");
+        return volume;
+    });
+    CHECK(writeSeries(series, folder.path("a.nrrd")) == std::vector<std::string>{"frame 2: two layers are missing"});
+}
 
 TEST_CASE("all frames that are written into one file are read back with their times", "[writer]") {
     const TempFolder folder;

@@ -135,7 +135,7 @@ TEST_CASE("legacy VTK files have arrays of many kinds", "[vtk-legacy]") {
         CHECK(first("two", 1) == 201);
         CHECK(first("n", 1) == 301);
         CHECK(first("t", 8) == 408);
-        CHECK(first("c d", 1) == (binary ? 'b' : 1));
+        CHECK(first("c d", 1) == (binary ? 'b' : 255)); // 1 is the brightest
         CHECK(first("of_cells", 0) == 600);
         CHECK(first("last", 2) == 802);
         CHECK_THAT(errorOf(sourceOf(path, "mask")), Contains("'bit' of 'mask' is not supported"));
@@ -148,6 +148,39 @@ TEST_CASE("legacy VTK files have arrays of many kinds", "[vtk-legacy]") {
         REQUIRE(cells.notices.size() == 1);
         CHECK_THAT(cells.notices[0], Contains("those of cells"));
     }
+}
+
+TEST_CASE("colours of legacy VTK files are bytes, also where they are written out", "[vtk-legacy]") {
+    const TempFolder folder;
+    // n / 255 as VTK writes it, 12 points of two components; and numbers that are no colours.
+    std::string text, bytes;
+    std::vector<std::uint8_t> expected;
+    for (int n = 0; n < 24; ++n) {
+        const int value = n * 11;
+        char word[16];
+        std::snprintf(word, sizeof word, "%.6g ", value / 255.0);
+        text += word;
+        bytes += static_cast<char>(value);
+        if (n % 2 == 1) expected.push_back(static_cast<std::uint8_t>(value));
+    }
+    const std::string head = "POINT_DATA 12\nCOLOR_SCALARS c 2\n";
+    for (const bool binary : {false, true}) {
+        CAPTURE(binary);
+        const std::string path = folder.write("a.vtk", vtk(binary, head + (binary ? bytes : text) + "\n"));
+        CHECK(contentsOf(sourceOf(path)).type == SampleType::U8);
+        CHECK(samplesOf<std::uint8_t>(loadVolume(sourceOf(path, "c", 1))) == expected);
+        VolumeSource part = sourceOf(path, "c", 1);
+        part.region = VoxelRegion{{1, 0, 0}, {2, 1, 1}};
+        CHECK(loadVolume(part).value(0) == expected[1]);
+    }
+    const std::string one = "POINT_DATA 12\nCOLOR_SCALARS c 1\n";
+    const Volume beyond =
+        loadVolume(sourceOf(folder.write("b.vtk", vtk(false, one + "-1 0 1 2 0.5 0.5 0.5 0.5 0.5 0.5 0.5 0.5\n"))));
+    CHECK(beyond.value(0) == 0);
+    CHECK(beyond.value(3) == 255);
+    CHECK(beyond.value(4) == 128); // 127.5 + 0.5
+    CHECK_THAT(errorOf(sourceOf(folder.write("d.vtk", vtk(false, one + "0 0 0 0 0 0 0 0 0 0 0 x\n")))),
+               Contains("'x' where a number belongs"));
 }
 
 TEST_CASE("cells of a flat legacy VTK image lie in its plane", "[vtk-legacy]") {

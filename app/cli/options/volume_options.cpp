@@ -47,7 +47,7 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
            "VOLUME", [this](const std::string& text) { path = pathOfUrl(text); },
            "a NRRD, MetaImage, NIfTI, VTK (VTI, PVTI, PVD, legacy), DICOM, TIFF, HDF5, NetCDF, PVM, Voreen, Inviwo or "
            "(with --raw) headerless file, a scene of 3D Slicer, a folder of DICOM files, pictures or OME-Zarr, a "
-           "file:// address, or sample:NAME; a series: "
+           "file: address, or sample:NAME; a series: "
            "a file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
            "--session")
         ->type_name("");

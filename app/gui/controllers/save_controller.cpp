@@ -91,8 +91,11 @@ SaveController::SaveController(Services& services, FieldController& fields,
       m_volumes(
           [](const VolumeTask& task, const JobControl& job) {
               const std::string path = task.path.toStdString();
-              return task.volume ? writeVolume(*task.volume, path, task.part, job)
-                                 : writeSeries(*task.series, path, task.part, job);
+              std::vector<std::string> lost = task.notices;
+              for (std::string& notice : task.volume ? writeVolume(*task.volume, path, task.part, job)
+                                                     : writeSeries(*task.series, path, task.part, job))
+                  lost.push_back(std::move(notice));
+              return lost;
           },
           [this](const VolumeTask& task, const std::vector<std::string>& lost) {
               m_services.saySaved(task.path);
@@ -284,7 +287,8 @@ void SaveController::saveVolume(const SaveVolumeOptions& options) {
 void SaveController::saveVolume(const SaveVolumeOptions& options, const Savable& from) {
     const std::string path = options.path.toStdString();
     if (!m_services.attempt(tr("Cannot save the volume"), [&] { requireNotOpen(path, options, from); })) return;
-    VolumeTask task{from.scene.volume, from.scene.series, options.path, options.part};
+    VolumeTask task{from.scene.volume, from.scene.series, options.path, options.part, {}};
+    if (!options.isField) task.notices = from.scene.volume->notices;
     if (options.allFrames) task.volume.reset();
     if (options.isField) task.volume = from.field;
     m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());

@@ -89,6 +89,7 @@ private:
         std::shared_ptr<TimeSeries> series;
         QString path;
         WrittenPart part;
+        std::vector<std::string> notices; ///< what reading the data lost
     };
     const Run* latestRun() const; ///< that a report can be made of; null: none
     bool mayReplace(const QString& file, const QString& title, const QString& question); ///< asks where it is there
@@ -120,7 +121,7 @@ private:
     QAction* m_barsAction = nullptr;
     Job<Picture, QString> m_images;
     Job<ReportTask, QString> m_reports;
-    Job<VolumeTask, std::vector<std::string>> m_volumes; ///< makes what the file does not say
+    Job<VolumeTask, std::vector<std::string>> m_volumes; ///< makes what the file does not have
 };
 
 } // namespace pellucid::gui

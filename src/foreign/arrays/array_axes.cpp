@@ -103,7 +103,7 @@ void readAxisTags(const std::string& text, std::vector<Axis>& axes) {
 
 /// Colours as the HDF5 Image Specification has them.
 void readImageClass(const ArrayFile& file, const ArrayVariable& variable, std::vector<Axis>& axes) {
-    if (file.text(variable, "IMAGE_SUBCLASS") != "IMAGE_TRUECOLOR") return;
+    if (axes.size() < 3 || file.text(variable, "IMAGE_SUBCLASS") != "IMAGE_TRUECOLOR") return;
     const bool byPlane = file.text(variable, "INTERLACE_MODE") == "INTERLACE_PLANE";
     (byPlane ? axes[axes.size() - 3] : axes.back()).kind = AxisKind::Components;
 }

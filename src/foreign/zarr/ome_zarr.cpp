@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
 #include "base/check.h"
 #include "base/text.h"
+#include "foreign/arrays/array_axes.h"
 #include "volume/file_names.h"
 #include "volume/formats/file_check.h"
 
@@ -24,6 +28,7 @@ using nlohmann::json;
 constexpr int kDeepest = 4; ///< groups in groups that are looked into
 constexpr std::size_t kMostImages = 1000;
 constexpr std::size_t kMostLevels = 32;
+constexpr std::size_t kMostTimes = 100'000; ///< of an array; there may be a thousand arrays
 
 std::string joinedPath(const std::string& folder, const std::string& name) {
     return folder.empty() ? name : folder + "/" + name;
@@ -52,7 +57,7 @@ struct Axes {
     std::vector<std::string> units; ///< "micrometer"; empty: not given
 };
 
-Axes axesOf(const JsonValue& multiscale, std::size_t count) {
+Axes axesOfImage(const JsonValue& multiscale, std::size_t count) {
     Axes axes;
     if (!multiscale.has("axes")) { // NGFF 0.1 and 0.2 have five, in this order
         axes.letters = std::string("tczyx").substr(5 - std::min<std::size_t>(count, 5));
@@ -78,8 +83,11 @@ Axes axesOf(const JsonValue& multiscale, std::size_t count) {
 /// Scale and translation of each axis by a list of transformations: steps[a]·index + offsets[a].
 struct Placement {
     std::vector<double> steps, offsets;
+    bool hasOwnOffsets = false; ///< by a translation of this array, not of all
     explicit Placement(std::size_t axes) : steps(axes, 1.0), offsets(axes, 0.0) {}
-    void apply(const JsonValue& transformations) {
+    /// Answers whether there is a translation among them.
+    bool apply(const JsonValue& transformations) {
+        bool isMoved = false;
         for (const JsonValue& one : transformations.items()) {
             const std::string type = one["type"].text();
             if (type == "identity") continue;
@@ -93,13 +101,144 @@ struct Placement {
                     offsets[a] *= numbers[a];
                 } else {
                     offsets[a] += numbers[a];
+                    isMoved = true;
                 }
             }
         }
+        return isMoved;
     }
 };
 
 constexpr std::string_view kSpace = "xyz";
+constexpr char kOneEntry = '1'; ///< in place of the letter of an axis that nothing is along
+
+/// Bytes of a text in base64; empty where it is none.
+std::string bytesInBase64(const std::string& text) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text.substr(0, text.find('='))) {
+        const std::size_t digit = kDigits.find(c);
+        if (digit == std::string_view::npos) return {};
+        bits = bits << 6 | static_cast<std::uint32_t>(digit);
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes += static_cast<char>(bits >> count & 255u);
+    }
+    return bytes;
+}
+
+/// The number that a text in place of one stands for: xarray writes fill values of floats in base64 (version 3).
+std::optional<double> numberInText(const std::string& text) {
+    if (text == "NaN") return std::numeric_limits<double>::quiet_NaN();
+    if (text == "Infinity") return std::numeric_limits<double>::infinity();
+    if (text == "-Infinity") return -std::numeric_limits<double>::infinity();
+    const std::string bytes = text.size() == 12 ? bytesInBase64(text) : "";
+    double number = 0;
+    if (bytes.size() != sizeof number) return {};
+    std::uint64_t bits = 0;
+    for (std::size_t i = sizeof number; i-- > 0;) bits = bits << 8 | static_cast<unsigned char>(bytes[i]);
+    std::memcpy(&number, &bits, sizeof number);
+    return number;
+}
+
+/// An array with the coordinates that lie beside it, as xarray writes them: what NetCDF's rules are asked about.
+class ArrayInGroup final : public ArrayFile {
+public:
+    /// The array without the axis `channels`. `group`: the folder that it is in; empty: not known.
+    ArrayInGroup(const ZarrArray& array, const ZarrNode& node, std::optional<std::size_t> channels,
+                 const std::string& group, const BeforeFile& before)
+        : m_file(array.file()), m_before(before) {
+        json attributes = node.attributes;
+        // Version 2 has xarray's missing value as that of chunks which are not stored; 0 is that of all other writers.
+        if (node.version == 2 && attributes.contains("_ARRAY_DIMENSIONS") && !attributes.contains("_FillValue") &&
+            node.metadata.contains("fill_value") && node.metadata["fill_value"] != 0)
+            attributes["_FillValue"] = node.metadata["fill_value"];
+        add("", array, std::move(attributes));
+        for (std::size_t a = 0; a < array.shape().size(); ++a) {
+            if (a == channels) continue;
+            const std::string name = a < array.names().size() ? array.names()[a] : "";
+            m_dimensions.push_back({name, ""});
+            if (const bool isName = !name.empty() && name.front() != '.' && name.find('/') == std::string::npos;
+                isName && !group.empty())
+                addCoordinates(group + "/" + name, m_dimensions.back());
+        }
+        std::vector<std::int64_t>& dims = m_variables.front().dims;
+        if (channels) dims.erase(dims.begin() + static_cast<std::ptrdiff_t>(*channels));
+    }
+
+    bool isNetCdf() const override { return false; }
+    const std::vector<ArrayVariable>& variables() const override { return m_variables; }
+    std::vector<std::string> files() const override { return {m_file}; }
+    std::vector<std::string> notices() const override { return m_notices; }
+
+    std::optional<ArrayAttribute> attribute(const ArrayVariable& variable, const std::string& name) const override {
+        const json& all = m_attributes.at(indexOf(variable));
+        const auto found = all.find(name);
+        if (found == all.end()) return {};
+        ArrayAttribute attribute;
+        const auto take = [&](const json& value) {
+            if (value.is_number()) attribute.numbers.push_back(value.get<double>());
+            attribute.areFloats = attribute.areFloats || value.is_number_float();
+        };
+        take(*found);
+        if (found->is_array()) std::ranges::for_each(*found, take);
+        if (!found->is_string()) return attribute;
+        attribute.text = found->get<std::string>();
+        const auto number =
+            name == "_FillValue" || name == "missing_value" ? numberInText(attribute.text) : std::nullopt;
+        if (number) attribute = {"", {*number}, true};
+        return attribute;
+    }
+
+    std::vector<ArrayDimension> dimensions(const ArrayVariable&) const override { return m_dimensions; }
+    std::vector<std::string> check(const ArrayVariable&) const override { return {}; }
+    std::vector<std::int64_t> blockSize(const ArrayVariable& variable) const override { return variable.dims; }
+    std::optional<PlainValues> plainValues(const ArrayVariable&, const ArrayBox&) const override { return {}; }
+
+    void read(const ArrayVariable& variable, const ArrayBox& box, std::span<std::byte> to) const override {
+        PELLUCID_CHECK(box.size.size() == 1);
+        constexpr std::int64_t kStride = 1;
+        m_arrays.at(indexOf(variable))
+            .read({box.first, {box.first[0] + box.size[0]}}, std::span(&kStride, 1), to, m_before, {});
+    }
+
+private:
+    std::size_t indexOf(const ArrayVariable& variable) const {
+        return static_cast<std::size_t>(&variable - m_variables.data());
+    }
+
+    void add(const std::string& name, const ZarrArray& array, json attributes) {
+        m_variables.push_back({name, array.shape(), array.type(), ""});
+        m_arrays.push_back(array);
+        m_attributes.push_back(std::move(attributes));
+    }
+
+    void addCoordinates(const std::string& folder, ArrayDimension& dimension) {
+        try {
+            m_before(0);
+            const std::optional<ZarrNode> node = zarrNodeAt(folder);
+            if (!node || !node->isArray()) return;
+            const ZarrArray array(folder, *node);
+            if (array.shape().size() != 1) return;
+            dimension.coordinates = "/" + dimension.name;
+            add(dimension.coordinates, array, node->attributes);
+        } catch (const Error& error) {
+            m_notices.push_back("the coordinates along " + inQuotes(dimension.name) +
+                                " are passed over: " + error.problem());
+        }
+    }
+
+    std::string m_file;
+    BeforeFile m_before;
+    std::vector<ArrayVariable> m_variables; ///< the array, then coordinates
+    std::vector<ZarrArray> m_arrays;
+    std::vector<json> m_attributes;
+    std::vector<ArrayDimension> m_dimensions; ///< of the array
+    std::vector<std::string> m_notices;
+};
 
 } // namespace
 
@@ -148,7 +287,7 @@ void OmeZarr::find(const std::string& folder, const std::string& name, int depth
     try {
         node = zarrNodeAt(folder);
         if (!node) return;
-        if (node->isArray()) return addArray(folder, name, *node);
+        if (node->isArray()) return addArray(folder, name, *node, before);
         const json& attributes = node->attributes;
         const json& ome = attributes.contains("ome") && attributes["ome"].is_object() ? attributes["ome"] : attributes;
         const JsonValue metadata(ome, node->file);
@@ -190,12 +329,13 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
             throw FileError("this array is missing, a level of its image", at, "copy the image with all of its levels");
         image.levels.emplace_back(at, *node);
         const std::size_t count = image.levels.back().shape().size();
-        if (image.levels.size() == 1) axes = axesOf(multiscale, count);
+        if (image.levels.size() == 1) axes = axesOfImage(multiscale, count);
         if (count != axes.letters.size())
             dataset.fail("the array has " + std::to_string(count) + " axes, its image " +
                          std::to_string(axes.letters.size()));
         Placement& placed = placements.emplace_back(count);
-        if (dataset.has("coordinateTransformations")) placed.apply(dataset["coordinateTransformations"]);
+        if (dataset.has("coordinateTransformations"))
+            placed.hasOwnOffsets = placed.apply(dataset["coordinateTransformations"]);
         if (multiscale.has("coordinateTransformations")) placed.apply(multiscale["coordinateTransformations"]);
     }
     if (image.levels.empty()) multiscale.fail("the image has no arrays");
@@ -203,7 +343,11 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
     if (image.axes.find('x') == std::string::npos || image.axes.find('y') == std::string::npos)
         multiscale.fail("the image has no axes x and y");
     for (std::size_t level = image.levels.size() - 1; level > 0; --level)
-        if (!image.isCoarser(level)) image.levels.erase(image.levels.begin() + static_cast<std::ptrdiff_t>(level));
+        if (!image.isCoarser(level)) {
+            image.levels.erase(image.levels.begin() + static_cast<std::ptrdiff_t>(level));
+            placements.erase(placements.begin() + static_cast<std::ptrdiff_t>(level));
+        }
+    image.origins.resize(image.levels.size(), Vec3(0));
     std::string unit;
     for (int a = 0; a < 3; ++a) {
         const std::size_t at = image.axes.find(kSpace[static_cast<std::size_t>(a)]);
@@ -211,9 +355,15 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
         if (unit.empty()) unit = axes.units[at];
         const auto own = sizeOfUnit(axes.units[at]), first = sizeOfUnit(unit);
         const double scale = own && first ? *own / *first : 1; // in the unit of x
+        if (!axes.units[at].empty() && axes.units[at] != unit && !(own && first))
+            image.notices.push_back("the axes have different units (" + printable(unit) + ", " +
+                                    printable(axes.units[at]) + "): their numbers are taken as they are");
         image.spacing[a] = placements.front().steps[at] * scale;
-        image.origin[a] = placements.front().offsets[at] * scale;
+        for (std::size_t level = 0; level < image.levels.size(); ++level)
+            (*image.origins[level])[a] = placements[level].offsets[at] * scale;
     }
+    for (std::size_t level = 1; level < image.levels.size(); ++level)
+        if (!placements[level].hasOwnOffsets) image.origins[level].reset();
     if (const std::size_t at = image.axes.find('t'); at != std::string::npos) {
         image.stepWidth = placements.front().steps[at];
         image.firstStep = placements.front().offsets[at];
@@ -226,25 +376,52 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
     m_images.push_back(std::move(image));
 }
 
-void OmeZarr::addArray(const std::string& folder, const std::string& name, const ZarrNode& node) {
+void OmeZarr::addArray(const std::string& folder, const std::string& name, const ZarrNode& node,
+                       const BeforeFile& before) {
     if (node.metadata.contains("shape") && node.metadata["shape"].is_array() && node.metadata["shape"].size() < 3)
         return; // coordinates, and the like
-    ZarrArray array(folder, node);
-    Image image;
-    image.name = name;
+    const ZarrArray array(folder, node);
     const std::size_t axes = array.shape().size();
+    const auto noVolume = [&] {
+        return FileError("an array of " + std::to_string(axes) + " axes is no volume", array.file(),
+                         "open another one");
+    };
+    std::optional<std::size_t> channels;
+    std::vector<std::size_t> others;
     for (std::size_t a = 0; a < axes; ++a) {
         const std::string axis = a < array.names().size() ? lowerCase(array.names()[a]) : "";
-        image.axes += axis == "t" || axis == "time" ? 't' : axis == "c" || axis == "channel" ? 'c' : '?';
+        if (!channels && (axis == "c" || axis == "channel"))
+            channels = a;
+        else
+            others.push_back(a);
     }
-    // The last three that are neither times nor channels are those of space; one more is of times.
-    std::size_t left = 0;
-    for (std::size_t a = axes; a-- > 0;)
-        if (image.axes[a] == '?') image.axes[a] = left < 3 ? kSpace[left++] : 't';
-    const auto count = [&](char letter) { return std::ranges::count(image.axes, letter); };
-    if (left < 2 || count('t') > 1 || count('c') > 1)
-        throw FileError("an array of " + std::to_string(axes) + " axes is no volume", array.file(), "open another one");
-    image.levels.push_back(std::move(array));
+    if (others.size() < 2) throw noVolume();
+    const std::string group = name.empty() ? "" : folder.substr(0, folder.rfind('/'));
+    const ArrayInGroup file(array, node, channels, group, before);
+    const ArrayVariable& variable = file.variables().front();
+    const ArrayAxes placed = axesOf(file, variable);
+    const std::size_t places = placed.places.size();
+    if (places < 2 || placed.steps.size() > 1 || (channels && placed.components)) throw noVolume();
+    Image image;
+    image.name = name;
+    image.axes.assign(axes, kOneEntry);
+    if (channels) image.axes[*channels] = 'c';
+    if (placed.components) image.axes[others[*placed.components]] = 'c';
+    for (const std::size_t step : placed.steps) image.axes[others[step]] = 't';
+    for (std::size_t n = 0; n < places; ++n) image.axes[others[placed.places[places - 1 - n]]] = kSpace[n];
+    image.spacing = placed.spacing;
+    image.origins = {placed.origin};
+    image.directions = placed.directions;
+    image.packed = packedValuesOf(file, variable);
+    if (group.empty() && !array.names().empty())
+        image.notices.emplace_back(
+            "the array is opened by itself, without coordinates that may lie beside it: open the "
+            "folder around it");
+    if (placed.times.size() <= kMostTimes) image.times = placed.times;
+    image.timeUnit = printable(placed.timeUnit);
+    for (const auto& notices : {file.notices(), placed.notices, image.packed->notices})
+        for (const std::string& notice : notices) image.notices.push_back(printable(notice));
+    image.levels.push_back(array);
     m_images.push_back(std::move(image));
 }
 
@@ -253,11 +430,12 @@ ReaderLayout OmeZarr::layout(int step) const {
     requireIndex("time step", step, static_cast<std::uint64_t>(image.size('t')), m_path);
     ReaderLayout answer;
     FileLayout& layout = answer.layout;
-    layout.type = image.levels.front().type();
+    layout.type = image.packed ? image.packed->type : image.levels.front().type();
     for (const char axis : kSpace) layout.axes.push_back({image.size(axis)});
     if (image.size('c') > 1) layout.axes.push_back({image.size('c'), true});
     layout.spacing = image.spacing;
-    layout.origin = image.origin;
+    layout.origin = *image.origins.front();
+    layout.directions = image.directions;
     for (int a = 0; a < 3; ++a) // as axes that run the other way
         if (layout.spacing[a] < 0) {
             layout.spacing[a] = -layout.spacing[a];
@@ -265,12 +443,17 @@ ReaderLayout OmeZarr::layout(int step) const {
         }
     layout.array = image.name;
     layout.notices = image.notices;
+    if (image.packed) {
+        layout.scaling = image.packed->scaling;
+        answer.missing = missingAs(contentsOf(layout).type, *image.packed);
+    }
     const std::size_t z = image.axes.find('z');
     const auto layersOf = [&](const ZarrArray& array) { return z == std::string::npos ? 1 : array.chunk()[z]; };
     for (std::size_t n = 1; n < image.levels.size(); ++n) {
         const Vec3 factors(image.factors(n));
-        answer.levels.push_back({image.dims(n), image.factors(n), layout.spacing * factors,
-                                 layout.origin + layout.directions * (0.5 * (factors - 1.0) * layout.spacing)});
+        const Vec3 ofMeans = layout.origin + layout.directions * (0.5 * (factors - 1.0) * layout.spacing);
+        answer.levels.push_back(
+            {image.dims(n), image.factors(n), layout.spacing * factors, image.origins[n].value_or(ofMeans)});
     }
     answer.layersAtOnce = static_cast<int>(std::min(layersOf(image.levels.front()), image.size('z')));
     return answer;
@@ -280,6 +463,8 @@ FileContents OmeZarr::contents() const {
     const Image& shown = m_images[m_shown];
     FileContents contents = contentsOf(layout(0).layout);
     contents.steps = static_cast<int>(shown.size('t'));
+    contents.times = shown.times;
+    if (!shown.times.empty()) contents.timeUnit = shown.timeUnit;
     if (shown.stepWidth > 0 && contents.steps > 1 && contents.steps < 1'000'000) {
         contents.timeUnit = shown.timeUnit;
         for (int step = 0; step < contents.steps; ++step)
@@ -315,7 +500,7 @@ void OmeZarr::read(int step, const ReaderBox& box, std::span<std::byte> voxels, 
     for (std::size_t a = 0; a < axes; ++a) {
         const std::size_t space = kSpace.find(image.axes[a]);
         if (space == std::string_view::npos) {
-            part.lo[a] = image.axes[a] == 't' ? step : box.component;
+            part.lo[a] = image.axes[a] == 't' ? step : image.axes[a] == 'c' ? box.component : 0;
             part.hi[a] = part.lo[a] + 1;
             continue;
         }
@@ -325,6 +510,7 @@ void OmeZarr::read(int step, const ReaderBox& box, std::span<std::byte> voxels, 
         strides[a] = s == 0 ? 1 : s == 1 ? size.x : std::int64_t{size.x} * size.y;
     }
     image.levels.at(static_cast<std::size_t>(box.level)).read(part, strides, voxels, before, job);
+    if (image.packed) markMissing(*image.packed, voxels);
 }
 
 } // namespace pellucid

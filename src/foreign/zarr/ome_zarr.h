@@ -2,9 +2,11 @@
 // pellucid-array-reader only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "foreign/arrays/packed_values.h"
 #include "foreign/foreign_volume.h"
 #include "foreign/zarr/zarr_array.h"
 
@@ -28,9 +30,13 @@ private:
     struct Image {
         std::string name; ///< path in the folder; empty: the folder itself
         std::vector<ZarrArray> levels;
-        std::string axes; ///< a letter of "tczyx" for each
-        Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
+        std::string axes; ///< a letter of "tczyx" for each, or "1": it has one entry and is no place
+        Vec3 spacing{1, 1, 1};
+        std::vector<std::optional<Vec3>> origins; ///< of each level; empty: it does not say
+        Mat3 directions{1};
+        std::optional<PackedValues> packed;  ///< of an array that is no image
         double firstStep = 0, stepWidth = 0; ///< in timeUnit; a width of 0: not known
+        std::vector<double> times;           ///< of the steps, where coordinates tell each
         std::string timeUnit;
         std::vector<std::string> notices;
         std::int64_t size(char axis, std::size_t level = 0) const;
@@ -41,7 +47,7 @@ private:
     void find(const std::string& folder, const std::string& name, int depth, const BeforeFile& before);
     void addImage(const std::string& folder, const std::string& name, const JsonValue& multiscale,
                   const BeforeFile& before);
-    void addArray(const std::string& folder, const std::string& name, const ZarrNode& node);
+    void addArray(const std::string& folder, const std::string& name, const ZarrNode& node, const BeforeFile& before);
 
     std::string m_path;
     std::vector<Image> m_images;

@@ -25,6 +25,26 @@ constexpr std::size_t kMostAxes = 16;
 constexpr std::uint64_t kMostChunk = std::uint64_t{1} << 30; ///< bytes
 constexpr std::int64_t kMostInShard = std::int64_t{1} << 40; ///< chunks: the bytes of their table can be counted
 
+/// `text` with the numbers that JSON has no word for in quotes, as Zarr 3 has them: Python writes them without.
+std::string withQuotedNumbers(const std::string& text) {
+    std::string quoted;
+    bool isInText = false;
+    for (std::size_t at = 0; at < text.size();) {
+        std::size_t length = isInText && text[at] == '\\' ? 2 : 1;
+        if (text[at] == '"') isInText = !isInText;
+        bool isNumber = false;
+        for (const std::string_view word : {"NaN", "Infinity", "-Infinity"})
+            if (!isInText && text.compare(at, word.size(), word) == 0) {
+                isNumber = true;
+                length = word.size();
+            }
+        const std::string part = text.substr(at, length);
+        quoted += isNumber ? '"' + part + '"' : part;
+        at += length;
+    }
+    return quoted;
+}
+
 json jsonAt(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     std::string text;
@@ -34,6 +54,7 @@ json jsonAt(const std::string& path) {
         if (text.size() > kMostMetadata) throw FileError("the metadata are too long", path, "correct the file");
     }
     json document = json::parse(text, nullptr, false);
+    if (document.is_discarded()) document = json::parse(withQuotedNumbers(text), nullptr, false);
     if (!document.is_object()) throw FileError("the metadata are no JSON object", path, "copy or write the file again");
     return document;
 }
@@ -242,7 +263,7 @@ void ZarrArray::readFill(const JsonValue& metadata) {
 }
 
 void ZarrArray::requireSizes(const JsonValue& at) const {
-    if (m_shape.size() < 2 || m_shape.size() != m_chunk.size())
+    if (m_shape.empty() || m_shape.size() != m_chunk.size())
         at.fail("an array of " + std::to_string(m_shape.size()) + " axes with chunks of " +
                 std::to_string(m_chunk.size()) + " is no volume");
     const std::uint64_t chunk = valueCount(m_file, m_chunk, 8) * bytesPerValue(m_type);

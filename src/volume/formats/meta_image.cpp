@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <initializer_list>
 #include <map>
+#include <optional>
 
+#include "base/round_numbers.h"
 #include "volume/formats/data_files.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/text_header.h"
@@ -117,10 +119,31 @@ WorldAxes worldAxesIn(const TextHeader& header) {
 
 /// Millimetres of the header's unit of length; 1 where it names none. Throws FileError for one that is not known.
 double millimetresIn(const TextHeader& header) {
-    const std::string unit = lowerCase(header.get("DistanceUnits"));
-    static const std::map<std::string, double> kUnits{{"", 1}, {"?", 1}, {"um", 1e-3}, {"mm", 1}, {"cm", 10}};
-    if (const auto it = kUnits.find(unit); it != kUnits.end()) return it->second;
-    header.fail("the DistanceUnits " + inQuotes(header.get("DistanceUnits")) + " are not known", "write um, mm or cm");
+    const std::string unit = header.get("DistanceUnits");
+    if (unit.empty() || unit == "?") return 1;
+    if (const auto millimetres = millimetresPer(unit)) return *millimetres;
+    header.fail("the DistanceUnits " + inQuotes(unit) + " are not known", "write um, mm or cm");
+}
+
+/// The number of a field, finite; `otherwise` where there is no such field.
+double fieldNumber(const TextHeader& header, const std::string& name, double otherwise) {
+    const std::vector<double> numbers = finiteNumbers(header.get(name), name, header.path());
+    return numbers.empty() ? otherwise : numbers.front();
+}
+
+/// What the header makes of the numbers in the file.
+std::optional<ValueScaling> scalingIn(const TextHeader& header, std::vector<std::string>& notices) {
+    const ValueScaling scaling{fieldNumber(header, "ElementToIntensityFunctionSlope", 1),
+                               fieldNumber(header, "ElementToIntensityFunctionOffset", 0)};
+    if (scaling.slope == 1 && scaling.intercept == 0) return {};
+    if (scaling.slope == 0) {
+        notices.emplace_back(
+            "the header's ElementToIntensityFunction would make all values the same: it is passed over");
+        return {};
+    }
+    notices.push_back("values are " + exactText(scaling.slope) + " x what the file stores + " +
+                      exactText(scaling.intercept) + ", as its ElementToIntensityFunction says");
+    return scaling;
 }
 
 bool isBigEndian(const TextHeader& header) {
@@ -200,11 +223,13 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
         layout.origin[static_cast<int>(a)] = origin[a];
     layout.directions = directionsIn(header, sizes.size());
     layout.worldAxes = worldAxesIn(header);
-    if (layout.worldAxes == WorldAxes::Patient) {
-        const double millimetres = millimetresIn(header);
-        layout.spacing *= millimetres;
-        layout.origin *= millimetres;
-    }
+    const double millimetres = millimetresIn(header);
+    layout.spacing *= millimetres;
+    layout.origin *= millimetres;
+    if (millimetres != 1 && layout.worldAxes == WorldAxes::File)
+        layout.notices.push_back("the header gives lengths in " + printable(header.get("DistanceUnits")) +
+                                 ": shown in mm");
+    layout.scaling = scalingIn(header, layout.notices);
     layout.bigEndian = isBigEndian(header);
     layout.encoding = encodingIn(header);
     layout.zlib = true;

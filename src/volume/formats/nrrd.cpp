@@ -187,23 +187,42 @@ std::string quotedWord(const std::string& text, std::size_t n) {
     return {};
 }
 
+/// The units of the first axes in space, as the header names them in "space units" or else for each of these axes of
+/// the file; empty where it names none.
+std::vector<std::string> unitsIn(const TextHeader& header, const std::vector<std::size_t>& inSpace) {
+    const bool areOfSpace = header.has("spaceunits");
+    const std::string text = header.get(areOfSpace ? "spaceunits" : "units");
+    const std::vector<std::string> words = splitWords(text);
+    std::vector<std::string> units;
+    for (std::size_t i = 0; i < inSpace.size(); ++i) {
+        const std::size_t n = areOfSpace ? i : inSpace[i]; // in quotes, as it should be, or not
+        std::string unit =
+            text.find('"') != std::string::npos ? quotedWord(text, n) : (n < words.size() ? words[n] : std::string());
+        if (!unit.empty() && !isNone(unit)) units.push_back(std::move(unit));
+    }
+    return units;
+}
+
 /// Millimetres of the header's unit of length; 1 where it names none that is known. Throws FileError where axes have
 /// different ones.
-double millimetresIn(const TextHeader& header) {
-    const std::string units = lowerCase(header.get("spaceunits"));
-    const std::vector<std::string> words = splitWords(units);
-    const auto unitOf = [&](std::size_t axis) { // in quotes, as it should be, or not
-        return units.find('"') != std::string::npos ? quotedWord(units, axis)
-                                                    : (axis < words.size() ? words[axis] : std::string());
-    };
-    const std::string unit = unitOf(0);
-    for (const std::size_t axis : {1u, 2u})
-        if (const std::string other = unitOf(axis); !other.empty() && other != unit)
-            header.fail("the header measures axes in different units, " + inQuotes(unit) + " and " + inQuotes(other),
-                        "convert them, and correct space units");
-    static const std::map<std::string, double> kUnits{{"m", 1e3}, {"cm", 10}, {"um", 1e-3}, {"µm", 1e-3}, {"nm", 1e-6}};
-    const auto it = kUnits.find(unit);
-    return it == kUnits.end() ? 1 : it->second;
+double millimetresIn(const TextHeader& header, const std::vector<std::size_t>& inSpace, bool ofPatient,
+                     std::vector<std::string>& notices) {
+    const std::vector<std::string> units = unitsIn(header, inSpace);
+    if (units.empty()) return 1;
+    const auto first = millimetresPer(units.front());
+    for (const std::string& unit : units) {
+        const auto other = millimetresPer(unit);
+        if (lowerCase(unit) == lowerCase(units.front()) || (first && first == other)) continue;
+        const std::string differ =
+            "the header measures axes in different units, " + inQuotes(units.front()) + " and " + inQuotes(unit);
+        if (ofPatient || (first && other)) header.fail(differ, "convert them, and correct space units or units");
+        notices.push_back(printable(differ) + ": their numbers are taken as they are");
+        return 1;
+    }
+    if (!first && ofPatient)
+        notices.push_back("the unit of length " + printable(inQuotes(units.front())) +
+                          " is not known: millimetres are assumed");
+    return first.value_or(1);
 }
 
 /// What the header says of its axes one by one, with no direction in space. Numbers are NaN where it does not say.
@@ -263,10 +282,12 @@ void placeGrid(FileLayout& layout, const TextHeader& header) {
     const std::optional<Vec3> patient = flipOfSpace(header);
     const Vec3 flip = patient.value_or(Vec3(1));
     layout.worldAxes = patient ? WorldAxes::Patient : WorldAxes::File;
-    const double unit = patient ? millimetresIn(header) : 1;
     std::vector<std::size_t> inSpace;
     for (std::size_t a = 0; a < axes && inSpace.size() < 3; ++a)
         if (!layout.axes[a].components && !layout.axes[a].time) inSpace.push_back(a);
+    // Where there is no patient, lengths stay in the unit of the file.
+    const double millimetres = millimetresIn(header, inSpace, patient.has_value(), layout.notices);
+    const double unit = patient ? millimetres : 1;
     for (std::size_t i = 0; i < inSpace.size(); ++i) {
         const std::size_t a = inSpace[i];
         double& spacing = layout.spacing[static_cast<int>(i)];

@@ -1,8 +1,12 @@
 // VTK's legacy files (.vtk) of regular grids: a text header, values written out or binary.
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <utility>
 
+#include "volume/formats/byte_source.h"
 #include "volume/formats/reader.h"
+#include "volume/formats/text_header.h"
 #include "volume/formats/vtk_header.h"
 #include "volume/formats/vtk_legacy_header.h"
 
@@ -44,6 +48,25 @@ void placeGrid(FileLayout& layout, const LegacyVtk& file, const LegacyArray& arr
     }
 }
 
+/// The bytes that numbers from 0 to 1 stand for, as VTK makes them: to the nearest.
+class BytesOfFractions final : public ByteSource {
+public:
+    BytesOfFractions(const std::string& path, std::uint64_t start, const JobControl& job) : m_words(path, start, job) {}
+    std::size_t read(char* to, std::size_t count) override {
+        std::string word;
+        std::size_t done = 0;
+        for (; done < count && m_words.next(word); ++done) {
+            const double value = numberIn(word);
+            if (std::isnan(value)) break;
+            to[done] = static_cast<char>(static_cast<unsigned char>(std::clamp(255 * value + 0.5, 0.0, 255.0)));
+        }
+        return done;
+    }
+
+private:
+    TextWords m_words;
+};
+
 FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const JobControl& job) {
     const LegacyVtk file = readLegacyVtk(source.path, job);
     const Offered offered = offeredBy(file);
@@ -61,6 +84,12 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
     layout.bigEndian = true;
     layout.encoding = file.isBinary ? Encoding::Raw : Encoding::Text;
     layout.start = array.start;
+    if (array.areFractions) {
+        layout.encoding = Encoding::Raw;
+        layout.open = [path = source.path, start = array.start](const JobControl& control) {
+            return std::make_unique<BytesOfFractions>(path, start, control);
+        };
+    }
     placeGrid(layout, file, array);
     const std::uint64_t values = valuesIn(layout, source.path);
     if (offered.arrays.size() > 1 && source.array.empty())

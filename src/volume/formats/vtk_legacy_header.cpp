@@ -276,11 +276,12 @@ private:
         word.resize(bytes.read(word.data(), word.size()));
         return lowerCase(word) == kKeyword;
     }
-    /// Numbers from 0 to 1 where they are written out, else bytes.
+    /// Bytes; as numbers from 0 to 1 where they are written out.
     void readColours() {
         LegacyArray array = named(1);
         array.components = wholeNumber("a number of components");
-        array.typeName = m_file.isBinary ? "unsigned_char" : "float";
+        array.typeName = "unsigned_char";
+        array.areFractions = !m_file.isBinary;
         addArray(std::move(array));
     }
     void readTextureCoordinates() {

@@ -20,6 +20,7 @@ struct LegacyArray {
     std::uint64_t tuples = 0; ///< of so many components each
     std::uint64_t start = 0;  ///< byte of the file
     bool ofCells = false, isScalars = false;
+    bool areFractions = false; ///< numbers from 0 to 1 stand there for bytes from 0 to 255
 };
 
 /// A whole file of a regular grid.

@@ -142,9 +142,13 @@ public:
 
     /// Room for the voxels of each box, which stays as it is.
     void makeRoom(std::uint64_t bytes) {
-        if (::ftruncate(m_voxels.number(), static_cast<off_t>(bytes)) != 0)
+        if (::ftruncate(m_voxels.number(), static_cast<off_t>(bytes)) != 0) {
+            if (errno == EFBIG) // it is no file on a disk, but counts as one
+                throw FileError("the limit on the size of files leaves no room for the voxels, " + describeBytes(bytes),
+                                m_path, "raise it, as `ulimit -f unlimited` does in a shell");
             throw FileError("there is no memory for the voxels (" + std::generic_category().message(errno) + ")",
                             m_path, "close other programs", Remedy::AllowMoreMemory);
+        }
         ::fcntl(m_voxels.number(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW);
     }
 
