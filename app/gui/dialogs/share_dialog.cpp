@@ -56,9 +56,8 @@ ShareDialog::ShareDialog(const ShareOptions& offered, Estimate estimate, QWidget
     connect(browse, &QPushButton::clicked, this, &ShareDialog::browse);
 
     auto* const about = wrappedLabel("shareAbout", this);
-    about->setText(
-        tr("One HTML file that shows the volume in a browser, without a network: it can be turned, cut and "
-           "made fainter there, and features can be hidden."));
+    about->setText(tr("One HTML file that shows the volume in a browser, without a network: it can be turned, cut and "
+                      "made fainter there, and features can be hidden."));
     makeFaint(*about);
     auto* const privacy = wrappedLabel("sharePrivacy", this);
     privacy->setText(
