@@ -144,7 +144,7 @@ bool isWhole(FilmFile file, const std::string& path) {
             at += length;
         }
     }
-    return in && at == end;
+    return in && end > 0 && at == end;
 }
 
 } // namespace
