@@ -54,8 +54,8 @@ Answer run(const Options& o, Progress& progress) {
     }
     const int frames = o.allFrames ? series.size() : 1;
     const JobControl writing = progress.phase("writing");
-    const std::vector<std::string> lost =
-        o.allFrames ? writeSeries(series, o.out, part, writing) : writeVolume(volume, o.out, part, writing);
+    const std::vector<std::string> lost = o.allFrames ? writeSeries(series, o.out, part, writing, volume.notices)
+                                                      : writeVolume(volume, o.out, part, writing);
     notices.insert(notices.end(), lost.begin(), lost.end());
     const SampleType type = o.type.value_or(volume.sampleType());
     std::error_code ec;

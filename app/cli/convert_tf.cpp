@@ -109,8 +109,7 @@ Answer convertTf(const TfConversion& conversion, const SceneOptions& options, co
     if (writing.hasRange()) json["range"] = {writing.range().lo, writing.range().hi};
     std::vector<std::string> notices = std::move(losses);
     if (!lowerCase(out).ends_with(target.suffix()))
-        notices.push_back("its name does not end in " + target.suffix() + ", as that of " + target.inWords() +
-                          " should");
+        notices.push_back("the name of " + target.inWords() + " should end in " + target.suffix());
     return {"wrote " + out + ": " + target.inWords() + "\n", std::move(json), std::move(notices)};
 }
 

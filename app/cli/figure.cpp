@@ -35,18 +35,18 @@ Answer run(const Options& o, Progress& progress) {
     const Scene& scene = opened.scene;
     const FigureTask task{scene, o.scene.picture.pictureOf(scene).settings, o.figure.values(), o.out};
     const FigureFile figure = makeFigure(task, progress.phase("figure"));
+    std::vector<std::string> notices = opened.notices();
+    notices.insert(notices.end(), figure.notices.begin(), figure.notices.end());
     Json json{{"command", "figure"},
               {"file", o.out},
               {"bytes", figure.bytes},
               {"page_mm", {figure.width, figure.height}},
               {"pixels", {figure.pixels.width, figure.pixels.height}},
               {"features", jsonFromRows(figure.rows)},
-              {"notices", figure.notices},
+              {"notices", notices},
               {"volume", jsonFromVolume(*scene.volume)}};
     if (figure.scale) json["scale"] = {{"mm", figure.scale->millimetres}, {"text", figure.scale->text}};
     if (!figure.caption.empty()) json["caption"] = figure.caption;
-    std::vector<std::string> notices = opened.notices();
-    notices.insert(notices.end(), figure.notices.begin(), figure.notices.end());
     return {"wrote " + o.out + ": " + millimetres(figure.width) + " x " + millimetres(figure.height) +
                 " mm, the picture in " + std::to_string(figure.pixels.width) + " x " +
                 std::to_string(figure.pixels.height) + " pixels\n",

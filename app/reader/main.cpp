@@ -22,7 +22,10 @@ namespace {
 constexpr int kVoxels = 3;
 constexpr std::uint64_t kSpare = 256u << 20; ///< for libraries, besides what files and voxels take
 
-void say(const nlohmann::json& message) { std::cout << message.dump() << "\n" << std::flush; }
+/// Texts of files need not be UTF-8.
+void say(const nlohmann::json& message) {
+    std::cout << message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n" << std::flush;
+}
 
 /// Memory for the voxels, which is the asker's. The system hands it out piece by piece, a little before it is written:
 /// one call for many pages costs less than as many faults, and nothing is taken for voxels that never come.

@@ -104,9 +104,10 @@ std::string percentDecoded(std::string_view text) {
 
 std::string inQuotes(std::string_view text) {
     constexpr std::size_t kMost = 40;
-    std::string quote("'");
-    quote += text.substr(0, kMost);
-    return quote + (text.size() > kMost ? "…'" : "'");
+    std::size_t end = std::min(kMost, text.size());
+    while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+        --end; // whole letters
+    return "'" + std::string(text.substr(0, end)) + (text.size() > end ? "…'" : "'");
 }
 
 std::string anyOf(const std::vector<std::string>& words) {

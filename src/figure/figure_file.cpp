@@ -90,7 +90,7 @@ std::string fontNotice(const std::string& font) {
     if (wanted.empty() || taken.empty()) return {};
     return (wanted.size() == 1 ? "the font " + wanted[0] + " is not"
                                : "none of the fonts " + joined(wanted, ", ") + " is") +
-           " installed: the letters are in " + printable(taken.front());
+           " installed: " + printable(taken.front()) + " is used instead";
 }
 
 void checkFigureSuffix(const std::string& path) {

@@ -83,6 +83,8 @@ std::vector<char> readPlain(const DicomFrame& frame) {
     const DicomPixels& pixels = frame.pixels;
     const std::size_t values = samplesOf(pixels) * static_cast<std::size_t>(frame.framesInFile);
     const bool areShared = frame.photometric == "YBR_FULL_422" && pixels.samples == 3 && pixels.bitsAllocated == 8;
+    if (areShared && pixels.columns % 2 != 0)
+        throw failure(frame, "colours that two pixels share need an even number of columns");
     const std::size_t bytes = areShared        ? values / 3 * 2
                               : pixels.areBits ? (values + 7) / 8
                                                : values * bytesPerSampleOf(pixels);

@@ -361,6 +361,8 @@ void DicomSeries::read(int step, const ReaderBox& box, std::span<std::byte> voxe
                 double value = from[i];
                 if (layer.toAfter > 0) value += layer.toAfter * (other[i] - from[i]);
                 if constexpr (std::is_integral_v<T>) value = std::round(value);
+                // Between two pictures a value may come to lie where padding does.
+                if (m_missing && layer.toAfter > 0 && value == *m_missing) value = from[i];
                 if (m_missing && std::isnan(value)) value = *m_missing;
                 slice[i] = static_cast<T>(value);
             }

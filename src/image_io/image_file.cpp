@@ -37,9 +37,10 @@ fs::path pathOfCodecs() {
     return fs::exists(beside, ec) ? beside : folder / PELLUCID_LIBRARIES_FROM_PROGRAMS / PELLUCID_IMAGE_CODECS;
 }
 
-/// Libraries under OpenImageIO start threads while they are loaded, and end the program where they get none.
+/// Libraries under OpenImageIO start threads while they are loaded, as many as there are processors, and end the
+/// program where they get none.
 void requireThreads() {
-    constexpr int kMany = 8;
+    const unsigned many = std::max(8u, std::thread::hardware_concurrency());
     std::atomic<bool> isWaiting = true;
     const auto release = [&] {
         isWaiting = false;
@@ -47,7 +48,7 @@ void requireThreads() {
     };
     std::vector<std::jthread> threads;
     try {
-        for (int i = 0; i < kMany; ++i) threads.emplace_back([&] { isWaiting.wait(true); });
+        for (unsigned i = 0; i < many; ++i) threads.emplace_back([&] { isWaiting.wait(true); });
     } catch (...) {
         release();
         throw;

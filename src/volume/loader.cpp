@@ -86,7 +86,7 @@ std::optional<FileError> problemOfSuffix(const std::string& path) {
     if (hasOneOf(path, {".vts", ".pvts"})) return ofGrid("structured");
     if (hasOneOf(path, {".vtu", ".pvtu"})) return ofGrid("unstructured");
     if (hasOneOf(path, {".bz2", ".xz", ".zst", ".zip", ".7z"}))
-        return FileError("files that are packed as a whole are read where gzip has packed them: .nii.gz, .hdr.gz, "
+        return FileError("of compressed files, only those compressed by gzip can be read: .nii.gz, .hdr.gz and "
                          "headerless data",
                          path, "unpack it first");
     if (isLonePicture(path))

@@ -191,7 +191,7 @@ std::vector<std::string> writeVolume(const Volume& volume, const std::string& pa
 }
 
 std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path, const WrittenPart& part,
-                                     const JobControl& job) {
+                                     const JobControl& job, const std::vector<std::string>& told) {
     static_cast<void>(writerFor(path));
     std::shared_ptr<const Volume> frame = series.load(0, job);
     FramesToWrite all{frame->geometry(), frame->sampleType(), series.size()};
@@ -202,16 +202,17 @@ std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path
     all.times = evenTimes(all.frameTimes, listing.timeUnit);
     if (!all.times && all.frameTimes.size() > 1 && !lowerCase(path).ends_with(".pvd"))
         lost.emplace_back("frames do not follow each other at one step of time: the file does not say when they are");
-    // What reading lost of the first frame has been said where it was opened.
-    std::set<std::string> said(frame->notices.begin(), frame->notices.end());
+    std::set<std::string> said(told.begin(), told.end());
+    std::size_t kept = 0;
     all.frame = [&](int n, const JobControl& one) -> const Volume& {
         frame = series.load(n, {one.stop, {}});
         for (const std::string& notice : frame->notices)
-            if (said.insert(notice).second && said.size() <= kMostSaid)
+            if (said.insert(notice).second && kept++ < kMostSaid)
                 lost.push_back("frame " + std::to_string(n) + ": " + notice);
         return *frame;
     };
     const std::vector<std::string> more = write(std::move(all), path, part, job);
+    if (kept > kMostSaid) lost.push_back("and " + std::to_string(kept - kMostSaid) + " more of single frames");
     lost.insert(lost.end(), more.begin(), more.end());
     return lost;
 }

@@ -29,9 +29,10 @@ std::vector<std::string> writeVolume(const Volume& volume, const std::string& pa
 
 /// Writes all frames of a series into one file likewise, with their times; as VTK image data a file each, beside a
 /// collection (.pvd) that names them. Without a type they get that of the first frame. One frame is in memory at a
-/// time. Throws UsageError, too, where the format has no steps; FileError where a frame cannot be read.
+/// time. The answer has what reading a frame lost, too, except for what has been `told`. Throws UsageError, too, where
+/// the format has no steps; FileError where a frame cannot be read.
 std::vector<std::string> writeSeries(TimeSeries& series, const std::string& path, const WrittenPart& part = {},
-                                     const JobControl& job = {});
+                                     const JobControl& job = {}, const std::vector<std::string>& told = {});
 
 /// The files that writing so many frames replaces: `path`, and those beside it. Throws as checkVolumeSuffix() does.
 std::vector<std::string> writtenFiles(const std::string& path, int frames = 1);

@@ -982,7 +982,7 @@ TEST_CASE("convert says what of the data it did not read", "[cli]") {
         CHECK(outcome.status == 0);
         return outcome.err;
     };
-    w.write("a.raw", std::string(16 * 16 * 16, 'a') + "b");
+    w.write("a.raw", std::string(16 * 16 * 16 - 1, 'a') + "b");
     const Words raw{"a.raw", "--raw", "16,16,16,u8"};
     CHECK_THAT(said(raw + Words{"--downsample", "2", "--out", "a.nrrd"}),
                Catch::Matchers::Contains("downsampled by 2 to 8 x 8 x 8 of 16 x 16 x 16 voxels"));

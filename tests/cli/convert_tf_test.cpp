@@ -135,7 +135,7 @@ TEST_CASE("what a conversion assumes is said, and wrong ones are refused", "[cli
                Catch::Contains("end in .vp.json"));
     const Outcome table = w.run({"convert", "tents:2", "--to", "csv", "--out", "d.txt"});
     CHECK(table.out == "wrote d.txt: a table (CSV)\n");
-    CHECK_THAT(table.err, Catch::Contains("its name does not end in .tf.csv, as that of a table (CSV) should"));
+    CHECK_THAT(table.err, Catch::Contains("the name of a table (CSV) should end in .tf.csv"));
     CHECK_THAT(w.run({"convert", "tents:2", "--to", "slicer", "--out", "d.vp.json"}).err,
                !Catch::Contains("end in .vp.json"));
     w.write("c.json", R"([{"Name": "c", "IndexedColors": [1, 0, 0], "Annotations": [0, "bone"]}])");

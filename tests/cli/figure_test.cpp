@@ -53,14 +53,14 @@ TEST_CASE("figure has all parts where all are asked for, and says which font sta
         CHECK(outcome.status == 0);
         return outcome.err;
     };
-    CHECK(noteOf("NoSuchFontXYZ").find("the font NoSuchFontXYZ is not installed: the letters are in ") !=
-          std::string::npos);
+    CHECK(noteOf("NoSuchFontXYZ").find("the font NoSuchFontXYZ is not installed: ") != std::string::npos);
     CHECK(noteOf("NoSuchFontXYZ, sans").empty()); // any font is a sans
     const json noted = w.jsonAndNotes(kSmall + Words{"--parts", "legend", "--font", "NoSuchFontXYZ", "--out", "b.svg"});
     REQUIRE(noted["notices"].size() == 1);
     // What stands in is there, so that it can be asked for without a note.
-    const std::string notice = noted["notices"][0], before = "the letters are in ";
-    CHECK(noteOf(notice.substr(notice.find(before) + before.size())).empty());
+    const std::string notice = noted["notices"][0], before = "installed: ";
+    const std::size_t at = notice.find(before) + before.size();
+    CHECK(noteOf(notice.substr(at, notice.find(" is used instead") - at)).empty());
 }
 
 TEST_CASE("figures that cannot be made are refused in words", "[cli][figure]") {

@@ -333,14 +333,17 @@ TEST_CASE("a film is made where ffmpeg is installed", "[cli][sequence]") {
         CHECK(r.err.find("ffmpeg is not installed") != std::string::npos);
         CHECK_FALSE(w.has("o")); // told before any work
     }
-    // In its place a program whose film is the list of pictures that it was given, and their rate.
+    // In its place a program that notes the pictures that it was given, and their rate; the film is an empty box of
+    // MP4.
     std::filesystem::create_directory(w.path("bin"));
     w.write("bin/ffmpeg", "#!/bin/sh\nwhile [ $# -gt 1 ]; do [ \"$1\" = -framerate ] && rate=$2; shift; done\n"
-                          "{ for f in *.png; do readlink $f; done; echo rate $rate; } > \"$1\"\n");
+                          "{ for f in *.png; do readlink $f; done; echo rate $rate; } > \"$(dirname \"$0\")/list\"\n"
+                          "printf '\\000\\000\\000\\010free' > \"$1\"\n");
     std::filesystem::permissions(w.path("bin/ffmpeg"), std::filesystem::perms::owner_all);
     const PathOf with(w.path("bin").string() + ":/usr/bin:/bin");
     REQUIRE(w.run(film).status == 0);
-    const std::string list = w.read("film.mp4");
+    CHECK(w.has("film.mp4"));
+    const std::string list = w.read("bin/list");
     CHECK(list.find("frame_0000.png") < list.find("frame_0004.png"));
     CHECK(list.find("rate 5") != std::string::npos);
     CHECK_FALSE(w.has("film.mp4.list"));

@@ -221,7 +221,7 @@ TEST_CASE("a session that has not changed its data is silent, another is noted",
     REQUIRE(w.run({"generate", "knee", "--size", "20", "--out", "knee.nrrd"}).status == 0);
     const Outcome o = w.run({"info", "--session", "a.pellucid.json"});
     CHECK(o.status == 0);
-    CHECK(o.err.rfind("pellucid-cli: note: knee.nrrd", 0) == 0);
+    CHECK(o.err.rfind("pellucid-cli: note: the file knee.nrrd", 0) == 0);
     CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
 }
 

@@ -241,9 +241,9 @@ TEST_CASE("lines around boxes lie within the page, clear of its edges", "[figure
 
 TEST_CASE("a font that is not installed is named with the one that stands in", "[figure]") {
     const std::string standIn = familyOf("NoSuchFontXYZ").front();
-    CHECK(fontNotice("NoSuchFontXYZ") == "the font NoSuchFontXYZ is not installed: the letters are in " + standIn);
+    CHECK(fontNotice("NoSuchFontXYZ") == "the font NoSuchFontXYZ is not installed: " + standIn + " is used instead");
     CHECK(fontNotice("NoSuchFontXYZ, NoSuchEither") ==
-          "none of the fonts NoSuchFontXYZ, NoSuchEither is installed: the letters are in " + standIn);
+          "none of the fonts NoSuchFontXYZ, NoSuchEither is installed: " + standIn + " is used instead");
     CHECK(fontNotice(standIn).empty());
     CHECK(fontNotice(lowerCase(standIn)).empty());
     CHECK(fontNotice("NoSuchFontXYZ, " + standIn).empty()); // the first that is there counts

@@ -261,13 +261,19 @@ TEST_CASE("pages of OME-TIFF are the pictures that TiffData says", "[images]") {
                                       "IFD=\"0\" FirstZ=\"1\"/></OME:Pixels></OME:Image>");
         CHECK(pagesOf(load(2, names)) == std::vector{1, 0});
     }
+    SECTION("with units in XML's own letters") {
+        const std::string places = stack + " PhysicalSizeX=\"500\" PhysicalSizeXUnit=\"nm\" PhysicalSizeY=\"500\" "
+                                           "PhysicalSizeYUnit=\"nm\" PhysicalSizeZ=\"2\" PhysicalSizeZUnit=\"&#181;m\"";
+        const Volume micro = load(3, ome(omeImage(places, "")));
+        CHECK(micro.geometry().spacing.z == Approx(4 * micro.geometry().spacing.x)); // 2 µm and 500 nm
+    }
     SECTION("not more and not twice") {
         const Volume fewer = load(2, ome(omeImage(stack, "<TiffData IFD=\"0\" PlaneCount=\"3\"/>")));
         CHECK(pagesOf(fewer) == std::vector{0, 1});
         CHECK(hasNotice(fewer, "says that it has 3 pictures, but it has 2"));
         const Volume more = load(5, ome(omeImage(stack, "<TiffData IFD=\"1\" PlaneCount=\"3\"/>")));
         CHECK(pagesOf(more) == std::vector{1, 2, 3});
-        CHECK(hasNotice(more, "2 pages that OME-XML does not give to this image"));
+        CHECK(hasNotice(more, "2 pages do not belong to this image"));
         const Volume twice = load(4, ome(omeImage(stack, "<TiffData IFD=\"1\" PlaneCount=\"3\"/>" + data(0, 0, 0, 0))));
         CHECK(pagesOf(twice) == std::vector{1, 2, 3});
         CHECK(hasNotice(twice, "several pages for the same picture"));
@@ -279,6 +285,12 @@ TEST_CASE("pages of OME-TIFF are the pictures that TiffData says", "[images]") {
         const Volume one = load(6, ome(first + omeImage(stack, "<TiffData IFD=\"3\" PlaneCount=\"3\"/>")));
         CHECK(pagesOf(one) == std::vector{0, 1, 2});
         CHECK(hasNotice(one, "image 1 of 2, 'cells', is shown"));
+        // A name is cut to 40 bytes, which are 13 of these letters and one byte.
+        std::string longer = first, name;
+        for (int i = 0; i < 14; ++i) name += "細";
+        longer.replace(longer.find("cells"), 5, name);
+        const Volume named = load(6, ome(longer + omeImage(stack, "<TiffData IFD=\"3\" PlaneCount=\"3\"/>")));
+        CHECK(hasNotice(named, "image 1 of 2, '" + name.substr(0, 39) + "…', is shown"));
         const Volume last = load(6, ome(omeImage(stack, "<TiffData IFD=\"3\" PlaneCount=\"3\"/>") + first));
         CHECK(pagesOf(last) == std::vector{3, 4, 5});
         CHECK(pagesOf(load(6, ome(omeImage(stack, "") + omeImage(stack, "")))) == std::vector{0, 1, 2});

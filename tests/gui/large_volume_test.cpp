@@ -67,6 +67,6 @@ TEST_CASE("a coarser copy that is saved is said to be one, though its note was c
     w.saving().saveVolume({folder.filePath("b.nrrd")});
     REQUIRE(waitFor([&] { return saved.count() == 1; }));
     CHECK(std::ranges::any_of(w.services().notices().all(), [](const Notice& notice) {
-        return notice.text.contains("downsampled by 2 to 8 x 8 x 8 of 16 x 16 x 16 voxels");
+        return notice.text.contains("Downsampled by 2 to 8 x 8 x 8 of 16 x 16 x 16 voxels");
     }));
 }

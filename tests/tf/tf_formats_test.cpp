@@ -356,6 +356,11 @@ TEST_CASE("presets without a name and of the same name are told apart", "[tf][fo
     CHECK(loadTf(file + "#preset 2").range == ValueRange{0, 20});
     CHECK(loadTf(file + "#a (2)").range == ValueRange{0, 30});
     CHECK(loadTf(file + "#c#d").range == ValueRange{0, 40});
+    // Who is called "a (2)" stays so.
+    const std::string own =
+        folder.write("own.json", "[" + preset("a", 1) + ", " + preset("a", 2) + ", " + preset("a (2)", 3) + "]");
+    CHECK(tfNamesIn(own) == std::vector<std::string>{"a", "a (3)", "a (2)"});
+    CHECK(loadTf(own + "#a (2)").range == ValueRange{0, 3});
     CHECK(fileOfTf(file + "#c#d") == file);
     CHECK(fileOfTf(file) == file);
     CHECK_THROWS_WITH(loadTf(file + "#labels"), Contains("categories"));

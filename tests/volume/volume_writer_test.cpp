@@ -245,11 +245,13 @@ TEST_CASE("what reading lost of single frames is said where all are written", "[
         Geometry g;
         g.dims = {2, 1, 1};
         Volume volume(g, SampleArray<std::uint8_t>(std::vector<std::uint8_t>{0, 1}));
-        volume.notices.emplace_back("component 0 of 3 is shown"); // said of the first one where it was opened
+        volume.notices.emplace_back("component 0 of 3 is shown");
+        if (frame == 0) volume.notices.emplace_back("one layer is missing");
         if (frame == 2) volume.notices.emplace_back("two layers are missing");
         return volume;
     });
-    CHECK(writeSeries(series, folder.path("a.nrrd")) == std::vector<std::string>{"frame 2: two layers are missing"});
+    CHECK(writeSeries(series, folder.path("a.nrrd"), {}, {}, {"component 0 of 3 is shown"}) ==
+          std::vector<std::string>{"frame 0: one layer is missing", "frame 2: two layers are missing"});
 }
 
 TEST_CASE("all frames that are written into one file are read back with their times", "[writer]") {

@@ -71,10 +71,10 @@ void FilmController::save(const FilmTask& task) {
 void FilmController::sayUnfinished(const FilmTask& task) {
     const auto unfinished = unfinishedFilm(task);
     if (!unfinished || !unfinished->isThisOne || unfinished->pictures == 0) return;
-    const QString text = tr("The film %1 is not finished: %L2 of its %L3 pictures are drawn.")
-                             .arg(QFileInfo(QString::fromStdString(task.path)).fileName())
+    const QString text = tr("The film %3 is not finished: %L1 of its %L2 pictures are drawn.")
                              .arg(unfinished->pictures)
-                             .arg(task.shots.size());
+                             .arg(task.shots.size())
+                             .arg(QFileInfo(QString::fromStdString(task.path)).fileName());
     m_said[task.path] = text;
     m_services.notices().add({text, {{tr("Draw the rest"), [this, rest = withResume(task)] { save(rest); }}}});
 }

@@ -93,7 +93,7 @@ SaveController::SaveController(Services& services, FieldController& fields,
               const std::string path = task.path.toStdString();
               std::vector<std::string> lost = task.notices;
               for (std::string& notice : task.volume ? writeVolume(*task.volume, path, task.part, job)
-                                                     : writeSeries(*task.series, path, task.part, job))
+                                                     : writeSeries(*task.series, path, task.part, job, task.notices))
                   lost.push_back(std::move(notice));
               return lost;
           },

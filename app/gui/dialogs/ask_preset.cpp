@@ -37,9 +37,9 @@ QString askPreset(const QString& path, QWidget* parent) {
     dialog.setWindowTitle(QObject::tr("Choose a transfer function"));
     auto* what = wrappedLabel("presetWhat", &dialog);
     what->setTextFormat(Qt::PlainText);
-    what->setText(QObject::tr("%1 holds %L2 transfer functions. Which one do you want to open?")
-                      .arg(QFileInfo(path).fileName())
-                      .arg(names.size()));
+    what->setText(QObject::tr("%2 holds %L1 transfer functions. Which one do you want to open?")
+                      .arg(names.size())
+                      .arg(QFileInfo(path).fileName()));
     auto* list =
         named(new QListWidget(&dialog), "presetList", QObject::tr("Double-click a transfer function to open it"));
     list->addItems(names);

@@ -57,23 +57,31 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
     for (std::size_t f = 0; f < m_files.size(); ++f) {
         before(bytesOfFile(m_files[f]));
         const auto file = m_open(m_files[f]);
+        // Of a page that may be none of this image's; empty: of a type that cannot be read.
+        const auto shapeOfAny = [&]() -> std::optional<PageShape> {
+            try {
+                return file->shape();
+            } catch (const FileError&) {
+                return {};
+            }
+        };
         for (int page = 0; page < kMostPages && file->goTo(page); ++page) {
             if (page == 0 && !isFolder) {
-                m_order = pageOrderIn({file->description(), file->pixelsPerUnit(0), file->pixelsPerUnit(1),
-                                       file->shape(), std::filesystem::path(path).filename().string()});
+                m_order =
+                    pageOrderIn({file->description(), file->pixelsPerUnit(0), file->pixelsPerUnit(1),
+                                 shapeOfAny().value_or(PageShape{}), std::filesystem::path(path).filename().string()});
                 named.insert(m_order.pages.begin(), m_order.pages.end());
             }
             if (!named.empty() && !named.contains(page)) { // of another image
                 ++others;
                 continue;
             }
-            const PageShape shape = file->shape();
             if (m_pages.empty()) {
-                m_shape = shape;
-            } else if (!(shape == m_shape)) {
-                if (isFolder)
-                    throw failure(m_files[f], "the pictures of this folder are not alike: this one has " +
-                                                  textOf(shape) + ", the first " + textOf(m_shape));
+                m_shape = file->shape();
+            } else if (isFolder && !(file->shape() == m_shape)) {
+                throw failure(m_files[f], "the pictures of this folder are not alike: this one has " +
+                                              textOf(file->shape()) + ", the first " + textOf(m_shape));
+            } else if (!isFolder && shapeOfAny() != m_shape) {
                 ++passedOver; // a thumbnail, or a coarser copy
                 continue;
             }
@@ -88,8 +96,9 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
     addPlainPages();
     m_notices.insert(m_notices.begin(), m_order.notices.begin(), m_order.notices.end());
     if (others > 0)
-        m_notices.push_back(pagesText(others) + " that OME-XML does not give to this image " +
-                            (others == 1 ? "is" : "are") + " passed over");
+        m_notices.push_back(pagesText(others) +
+                            (others == 1 ? " does not belong to this image, according to its OME-XML, and is left out"
+                                         : " do not belong to this image, according to its OME-XML, and are left out"));
     if (passedOver > 0) m_notices.push_back(pagesText(passedOver) + " of another size or type passed over");
     if (isFolder) noteMissing();
     putInOrder();

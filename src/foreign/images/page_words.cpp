@@ -41,12 +41,12 @@ std::optional<double> found(const std::map<std::string, double>& units, const st
 
 std::optional<double> micrometresOf(const std::string& unit) {
     static const std::map<std::string, double> kUnits{
-        {"µm", 1},         {"um", 1},           {"micron", 1},       {"microns", 1}, {"micrometer", 1},
-        {"micrometre", 1}, {"nm", 1e-3},        {"pm", 1e-6},        {"fm", 1e-9},   {"Å", 1e-4},
-        {"mm", 1e3},       {"millimeter", 1e3}, {"nanometer", 1e-3}, {"cm", 1e4},    {"centimeter", 1e4},
-        {"dm", 1e5},       {"m", 1e6},          {"meter", 1e6},      {"km", 1e9},    {"Mm", 1e12},
-        {"in", 25400},     {"inch", 25400},     {"inches", 25400},   {"ft", 304800}, {"feet", 304800},
-        {"thou", 25.4}};
+        {"µm", 1},           {"um", 1},           {"micron", 1},       {"microns", 1},   {"micrometer", 1},
+        {"micrometre", 1},   {"nm", 1e-3},        {"pm", 1e-6},        {"fm", 1e-9},     {"Å", 1e-4},
+        {"mm", 1e3},         {"millimeter", 1e3}, {"nanometer", 1e-3}, {"cm", 1e4},      {"centimeter", 1e4},
+        {"dm", 1e5},         {"m", 1e6},          {"meter", 1e6},      {"km", 1e9},      {"Mm", 1e12},
+        {"millimetre", 1e3}, {"nanometre", 1e-3}, {"centimetre", 1e4}, {"metre", 1e6},   {"in", 25400},
+        {"inch", 25400},     {"inches", 25400},   {"ft", 304800},      {"feet", 304800}, {"thou", 25.4}};
     return found(kUnits, unit);
 }
 
@@ -80,7 +80,7 @@ void setSpacing(PageOrder& order, const Vec3& distances, const std::array<std::s
         if (!(distances[a] > 0)) {
             if (a < 2 || order.slices != 1)
                 order.notices.push_back("the file does not say how far voxels are apart along " + axis(a) +
-                                        ": as far as along " + axis(first) + " is taken");
+                                        ": the distance along " + axis(first) + " is used");
             continue;
         }
         const std::optional<double> from = micrometresOf(unit), to = micrometresOf(common);
@@ -180,14 +180,15 @@ public:
                 quote >= m_tag.size() || m_tag[quote - 1] != '=' || (m_tag[quote] != '"' && m_tag[quote] != '\''))
                 continue;
             const std::size_t end = m_tag.find(m_tag[quote], quote + 1);
-            return std::string(m_tag.substr(quote + 1, end == std::string_view::npos ? 0 : end - quote - 1));
+            return withoutEntities(
+                std::string(m_tag.substr(quote + 1, end == std::string_view::npos ? 0 : end - quote - 1)));
         }
         return {};
     }
     /// What stands between the tag and the next one.
     std::string text() const {
         const std::size_t begin = std::min(m_at + 1, m_text.size());
-        return trimmed(m_text.substr(begin, m_text.find('<', begin) - begin));
+        return withoutEntities(trimmed(m_text.substr(begin, m_text.find('<', begin) - begin)));
     }
 
 private:

@@ -14,8 +14,11 @@ namespace pellucid {
 
 std::vector<std::string> distinctNames(std::vector<std::string> names) {
     std::set<std::string> taken;
+    std::vector<bool> isOwn(names.size()); // the first of a name keeps it
+    for (std::size_t i = 0; i < names.size(); ++i) isOwn[i] = !names[i].empty() && taken.insert(names[i]).second;
     std::map<std::string, int> again; // how often each has come up
     for (std::size_t i = 0; i < names.size(); ++i) {
+        if (isOwn[i]) continue;
         const std::string own = names[i].empty() ? "preset " + std::to_string(i + 1) : names[i];
         names[i] = own;
         while (!taken.insert(names[i]).second) names[i] = own + " (" + std::to_string(++again[own] + 1) + ")";

@@ -186,14 +186,13 @@ void addNoDomainLoss(std::vector<std::string>& losses, const TfToWrite& tf, cons
     else if (tf.hasRange())
         loss += "which are assumed to be " + rangeText(tf.range());
     else
-        loss += "which 0 to 1 are assumed to stand for";
+        loss += "which are assumed to be those at 0 and 1";
     losses.push_back(loss + (tf.dataRange() || tf.hasVolume() ? "" : "; name a volume"));
 }
 
 std::string noDomainNotice(const ValueRange& positions, const std::optional<ValueRange>& values) {
     return "the file gives no data range: its positions " + rangeText(positions) +
-           (values ? " are put on the values " + rangeText(*values)
-                   : " stand for the ends of whatever range they are put on");
+           (values ? " are put on the values " + rangeText(*values) : " become the ends of the range of the data");
 }
 
 } // namespace pellucid

@@ -141,8 +141,9 @@ std::optional<ValueScaling> scalingIn(const TextHeader& header, std::vector<std:
             "the header's ElementToIntensityFunction would make all values the same: it is passed over");
         return {};
     }
-    notices.push_back("values are " + exactText(scaling.slope) + " x what the file stores + " +
-                      exactText(scaling.intercept) + ", as its ElementToIntensityFunction says");
+    notices.push_back("values are " + exactText(scaling.slope) + " x what the file stores" +
+                      (scaling.intercept < 0 ? " - " : " + ") + exactText(std::abs(scaling.intercept)) +
+                      ", as its ElementToIntensityFunction says");
     return scaling;
 }
 

@@ -79,7 +79,7 @@ void placeUnder(SceneVolume& volume, std::string id, const std::map<std::string,
         const auto found = transforms.find(id);
         if (found == transforms.end() || !found->second.toParent || n == kMost) {
             volume.moved.reset();
-            volume.unmoved = found == transforms.end() ? id : found->second.name;
+            volume.unmoved = found == transforms.end() || found->second.name.empty() ? id : found->second.name;
             return;
         }
         const Placement& next = *found->second.toParent;
@@ -163,6 +163,10 @@ Volume placed(Volume volume, const SceneVolume& inScene, const std::string& scen
         volume.notices.push_back(under + ", " + printable(inQuotes(inScene.unmoved)) +
                                  ", which is not applied: harden it in 3D Slicer");
     if (!inScene.moved) return volume;
+    if (volume.elsewhere() != nullptr) { // blocks on ranks lie on the grid of the file
+        volume.notices.push_back(under + ", which is not applied on several ranks: harden it in 3D Slicer");
+        return volume;
+    }
     if (volume.geometry().worldAxes != WorldAxes::Patient) {
         volume.notices.push_back(under + ", which is not applied: the volume is not in a patient's world");
         return volume;
@@ -177,25 +181,25 @@ Volume placed(Volume volume, const SceneVolume& inScene, const std::string& scen
     constexpr double kFlat = 1e-6;
     const std::string problem = geometryProblem(geometry.spacing, geometry.origin);
     if (!problem.empty() || !(std::abs(glm::determinant(geometry.directions)) > kFlat))
-        throw FileError("the transform of the volume in the scene cannot be meant" +
-                            (problem.empty() ? ": it makes it flat" : ": " + problem),
+        throw FileError("the volume's transform in the scene " +
+                            (problem.empty() ? "would make it flat" : "cannot be used: " + problem),
                         scene, "correct the transform in 3D Slicer");
-    geometry.referenceLength *= std::cbrt(std::abs(glm::determinant(inScene.moved->linear)));
     volume.notices.push_back(under + ", and lies where that puts it");
     return volume.withGeometry(geometry);
 }
 
 FileContents describe(const VolumeSource& source, const JobControl& job) {
     const std::vector<SceneVolume> volumes = readScene(source.path, job);
-    const VolumeSource file = sourceOf(chosenIn(volumes, source), source);
+    const SceneVolume& chosen = chosenIn(volumes, source);
+    const VolumeSource file = sourceOf(chosen, source);
     FileContents contents = contentsOf(file, job);
     contents.arrays.clear();
     contents.details.clear();
     for (const SceneVolume& volume : volumes) {
         contents.arrays.push_back(volume.name);
         contents.details.push_back(printable(fs::path(volume.path).filename().string()));
-        if (volume.path == file.path) contents.array = volume.name;
     }
+    contents.array = chosen.name;
     return contents;
 }
 

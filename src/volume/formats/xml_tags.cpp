@@ -31,7 +31,8 @@ std::string ofNumber(const std::string& entity) {
     return {static_cast<char>(0xf0 | code >> 18), tail(12), tail(6), tail(0)};
 }
 
-/// Replaces &amp; and the like; what is no entity stays as it is.
+} // namespace
+
 std::string withoutEntities(const std::string& text) {
     static const std::map<std::string, std::string> kNamed{
         {"amp", "&"}, {"lt", "<"}, {"gt", ">"}, {"quot", "\""}, {"apos", "'"}};
@@ -48,8 +49,6 @@ std::string withoutEntities(const std::string& text) {
     }
     return plain;
 }
-
-} // namespace
 
 std::string XmlTag::get(const std::string& attribute) const {
     const auto it = attributes.find(attribute);

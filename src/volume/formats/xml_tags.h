@@ -10,6 +10,9 @@
 
 namespace pellucid {
 
+/// `text` with &amp; and the like replaced; what is no entity stays as it is.
+std::string withoutEntities(const std::string& text);
+
 /// One tag.
 struct XmlTag {
     std::string name;
