@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Drives a page of `pellucid-cli share` in Chromium, as a person would, and compares it with `pellucid-cli render`.
+"""Drives a page of `pellucid-cli share` in a browser, as a person would, and compares it with `pellucid-cli render`.
 
-    drive_page.py PELLUCID_CLI [--volume VOLUME] [--keep FOLDER] [-- OPTIONS …]
+    drive_page.py PELLUCID_CLI [--volume VOLUME] [--browser chromium|firefox|PATH] [--keep FOLDER] [-- OPTIONS …]
 
-OPTIONS are those of a scene (--tf, --view, --shading …), for both commands. Talks to the browser over its pipe; needs
-nothing but Python and a browser. Says SKIPPED where there is none.
+OPTIONS are those of a scene (--tf, --view, --shading …), for both commands. Talks to Chromium over its pipe, to Firefox
+by its Marionette; needs nothing but Python and the browser. Says SKIPPED where that is not installed.
 """
 import argparse
 import base64
 import json
 import os
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -134,6 +135,97 @@ class Browser:
                 and e["params"].get("entry", {"level": "error"})["level"] == "error"]
 
 
+class Firefox(Browser):
+    """The same with Firefox, whose Marionette knows no scripts before those of a page: they go into a copy of it."""
+
+    KEYS = {"Home": "\ue011", "ArrowLeft": "\ue012"}
+    PREFERENCES = {"marionette.port": 0, "webgl.force-enabled": True, "gfx.x11-egl.force-enabled": True,
+                   "gfx.webrender.software": True, "browser.shell.checkDefaultBrowser": False,
+                   "datareporting.policy.dataSubmissionEnabled": False, "app.update.enabled": False, "browser.aboutwelcome.enabled": False}
+
+    def __init__(self, path, folder, width=1100, height=720, dark=False, before=""):
+        folder = Path(folder)
+        folder.mkdir(parents=True)
+        self.copy, self.before, self.last, self.buffer = folder / "page.html", before, 0, b""
+        wanted = {**self.PREFERENCES, "layout.css.prefers-color-scheme.content-override": 0 if dark else 1}
+        (folder / "user.js").write_text("".join(f"user_pref({json.dumps(k)}, {json.dumps(v)});\n" for k, v in wanted.items()))
+        self.process = subprocess.Popen([path, "--headless", "--marionette", "--no-remote", "--profile", str(folder)],
+                                        env={**os.environ, "HOME": str(folder), "MOZ_WEBGL_FORCE_EGL": "1"}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        port, end = folder / "MarionetteActivePort", time.time() + 60
+        while not (port.exists() and port.read_text()):
+            if time.time() > end or self.process.poll() is not None:
+                raise RuntimeError("Firefox does not answer")
+            time.sleep(0.05)
+        self.socket = socket.create_connection(("127.0.0.1", int(port.read_text())))
+        self.receive()
+        self.send("WebDriver:NewSession", {"capabilities": {"alwaysMatch": {"timeouts": {"script": 120000}}}})
+        self.send("WebDriver:SetWindowRect", {"width": width, "height": height})
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+        self.socket.close()
+
+    def send(self, method, params=None):
+        self.last += 1
+        text = json.dumps([0, self.last, method, params or {}]).encode()
+        self.socket.sendall(str(len(text)).encode() + b":" + text)
+        _, _, error, result = self.receive()
+        if error:
+            raise RuntimeError(f"{method}: {error}")
+        return result
+
+    def receive(self):
+        while True:
+            head, colon, rest = self.buffer.partition(b":")
+            if colon and len(rest) >= int(head):
+                self.buffer = rest[int(head):]
+                return json.loads(rest[:int(head)])
+            more = self.socket.recv(1 << 20)
+            if not more:
+                raise RuntimeError("the browser has ended")
+            self.buffer += more
+
+    def open(self, page):
+        first = ("<script>window.complaints = []; for (const kind of ['error', 'unhandledrejection', 'securitypolicyviolation'])"
+                 " addEventListener(kind, e => complaints.push(String(e.message || e.reason || e.violatedDirective)));"
+                 f"{self.before}</script>")
+        self.copy.write_text(Path(page).read_text().replace("<head>", "<head>" + first, 1))
+        self.send("WebDriver:Navigate", {"url": self.copy.absolute().as_uri()})
+        self.wait("typeof window.pellucid === 'object' && document.readyState === 'complete'")
+
+    def value(self, expression):
+        script = ("const done = arguments[arguments.length - 1]; (async () => (" + expression + "))()"
+                  ".then(value => done({value}), error => done({error: String(error)}));")
+        answer = self.send("WebDriver:ExecuteAsyncScript", {"script": script, "args": []})["value"]
+        if "error" in answer:
+            raise RuntimeError(answer["error"])
+        return answer.get("value")
+
+    def screenshot(self, path):
+        Path(path).write_bytes(base64.b64decode(self.send("WebDriver:TakeScreenshot", {"full": False})["value"]))
+
+    def act(self, kind, *actions, **more):
+        self.send("WebDriver:PerformActions", {"actions": [{"type": kind, "id": kind, "actions": list(actions), **more}]})
+
+    def key(self, key, shift=False):
+        value = self.KEYS.get(key, key)
+        self.act("key", {"type": "keyDown", "value": value}, {"type": "keyUp", "value": value})
+
+    def mouse(self, kind, x, y, **more):
+        actions = [{"type": "pointerMove", "x": x, "y": y}]
+        if kind != "mouseMoved":
+            actions.append({"type": "pointerDown" if kind == "mousePressed" else "pointerUp", "button": 0})
+        self.act("pointer", *actions)
+
+    def requests(self):
+        asked = self.value("performance.getEntriesByType('resource').map(entry => entry.name)")
+        return [url for url in asked if not url.startswith(("file:", "data:", "blob:"))]
+
+    def complaints(self):
+        return self.value("window.complaints")
+
+
 class Run:
     def __init__(self, arguments):
         self.cli, self.volume, self.options = arguments.cli, arguments.volume, arguments.options
@@ -169,7 +261,8 @@ class Run:
 
     def open(self, page, **how):
         self.browsers += 1
-        browser = Browser(self.browser, self.path(f"profile{self.browsers}"), **how)
+        kind = Firefox if "firefox" in Path(self.browser).name else Browser
+        browser = kind(self.browser, self.path(f"profile{self.browsers}"), **how)
         browser.open(page)
         return browser
 
@@ -313,11 +406,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("cli")
     parser.add_argument("--volume", default="sample:knee")
-    parser.add_argument("--browser", default=shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome"))
+    parser.add_argument("--browser", default="chromium")
     parser.add_argument("--keep", help="a folder for the page and pictures of it")
     parsed = parser.parse_args(arguments)
+    names = {"chromium": ("chromium", "chromium-browser", "google-chrome"), "firefox": ("firefox", "firefox-esr")}
+    asked, parsed.browser = parsed.browser, None
+    for name in names.get(asked, (asked,)):
+        parsed.browser = parsed.browser or shutil.which(name)
     if not parsed.browser:
-        print("SKIPPED: there is no Chromium, which shows the page")
+        print(f"SKIPPED: {asked}, which shows the page, is not installed")
         return 0
     parsed.options = options
     run = Run(parsed)

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "volume/file_names.h"
 #include "volume/formats/text_header.h"
+#include "volume/formats/xml_tags.h"
 
 namespace pellucid {
 
