@@ -148,7 +148,7 @@ TEST_CASE("programs that lay a curve over the data get it for all values of the 
     CHECK(says(unknown.losses, "assumed to be -1000 to 3000; name a volume"));
     CHECK(readOf("itksnap", unknown.text).tf.opacity(0.5) == Approx(0.4).margin(0.002));
     ramp.range.reset();
-    CHECK(says(writtenTf(itkSnapFormat(), {ramp, {}, {}, ""}).losses, "which 0 to 1 are assumed to stand for"));
+    CHECK(says(writtenTf(itkSnapFormat(), {ramp, {}, {}, ""}).losses, "which are assumed to be those at 0 and 1"));
 
     // Opened they are put on the data again; what other programs stretch over a window is not.
     Geometry line;
@@ -163,7 +163,7 @@ TEST_CASE("a file without a range is told with its positions and the values that
     const ReadTf preset = readOf("paraview", R"([{"Name": "a", "RGBPoints": [-1, 0, 0, 0, 1, 1, 1, 1]}])");
     CHECK(preset.positions == ValueRange{-1, 1});
     CHECK(says(openingNotices(preset, g, ValueRange{40, 80}), "its positions -1 to 1 are put on the values 40 to 80"));
-    CHECK(says(openingNotices(preset, g), "its positions -1 to 1 stand for"));
+    CHECK(says(openingNotices(preset, g), "its positions -1 to 1 become the ends"));
     const ReadTf placed = readOf("paraview", R"([{"Name": "a", "RGBPoints": [-1, 0, 0, 0, 2, 1, 1, 1]}])");
     CHECK_FALSE(says(openingNotices(placed, g, ValueRange{40, 80}), "no data range"));
 }

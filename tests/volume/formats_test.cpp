@@ -856,7 +856,7 @@ TEST_CASE("MetaImage says what the stored numbers mean", "[formats]") {
     const Volume scaled = mha("ElementToIntensityFunctionSlope = 0.5\nElementToIntensityFunctionOffset = -3\n");
     CHECK(scaled.value(0) == 0.5 * '0' - 3);
     CHECK(scaled.value(7) == 0.5 * '7' - 3);
-    CHECK(hasNotice(scaled, "values are 0.5 x what the file stores + -3"));
+    CHECK(hasNotice(scaled, "values are 0.5 x what the file stores - 3"));
     CHECK(mha("ElementToIntensityFunctionOffset = 2\n").value(1) == '1' + 2);
     const Volume same = mha("ElementToIntensityFunctionSlope = 1\nElementToIntensityFunctionOffset = 0\n");
     CHECK(same.sampleType() == SampleType::U8);

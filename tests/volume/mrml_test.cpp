@@ -107,7 +107,7 @@ TEST_CASE("transforms of a scene of 3D Slicer put its volumes in their places", 
     CHECK(hasNotice(loaded("transformNodeRef=\"gone\"", shift), "'gone', which is not applied"));
     CHECK(hasNotice(loaded("transformNodeRef=\"7\"", "<GridTransform id=\"7\"/>"), "'7', which is not applied"));
     CHECK_THROWS_WITH(loaded("transformNodeRef=\"1\"", transform("1", "1 0 0 0  1 0 0 0  0 0 1 0  0 0 0 1")),
-                      Contains("would make it flat"));
+                      Contains("cannot be used"));
     writeOf(folder.path("a.nrrd"), 1); // of no patient
     CHECK(hasNotice(loaded("transformNodeRef=\"1\"", shift), "not in a patient's world"));
 }
