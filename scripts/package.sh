@@ -13,6 +13,9 @@ if [ "${1:-}" = --cli ]; then
 fi
 scripts/setup.sh dpkg-dev file
 build=${PELLUCID_PACKAGE_BUILD:-build/package}
+# Whoever builds: folders can be read by all, and names of files are what the compiler makes of them, not ccache.
+umask 022
+export CCACHE_BASEDIR=
 # The day of the packages is that of the commit, so that two builds of it are the same.
 export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}
 cmake --preset package -B "$build" -DPELLUCID_BUILD_GUI=$gui \
