@@ -72,8 +72,7 @@ Answer run(const Options& o, Progress& progress) {
     Json json = jsonOf(scene.tf, among, alike, o.difference);
     if (o.outTf) {
         const TransferFunction tf = mended(scene, among, o.difference);
-        addTo(notices,
-              writeTfFile(tf, scene.volume->range(), *o.outTf, scene.volume->geometry(), scene.volume->dataRange()));
+        addTo(notices, writeTfFile(tf, *scene.volume, *o.outTf));
         text += "wrote " + *o.outTf + "\n";
         json["tf"] = jsonFromTf(tf);
     }

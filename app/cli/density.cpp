@@ -94,8 +94,7 @@ Answer run(const Options& o, Progress& progress) {
             notices.push_back("pictures with these shares are from " + percentText(low) + " to " + percentText(high) +
                               " opaque; the nearest one was taken");
         if (o.outTf)
-            addTo(notices, writeTfFile(withShownOpacities(scene.tf, chosen->opacity), input.volume->range(), *o.outTf,
-                                       input.volume->geometry(), input.volume->dataRange()));
+            addTo(notices, writeTfFile(withShownOpacities(scene.tf, chosen->opacity), *input.volume, *o.outTf));
     }
     seconds.total = total.seconds();
 

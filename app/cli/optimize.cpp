@@ -120,9 +120,7 @@ Answer run(const Options& o, Progress& progress) {
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
-    if (o.outTf)
-        addTo(notices, writeTfFile(result.tf, input.volume->range(), *o.outTf, input.volume->geometry(),
-                                   input.volume->dataRange()));
+    if (o.outTf) addTo(notices, writeTfFile(result.tf, *input.volume, *o.outTf));
     if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
     std::string text =
         textOf(result, namesWithEmpty(scene.tf, *scene.histogram), engine + profileText(input.settings), seconds);

@@ -144,9 +144,7 @@ Answer run(const Options& o, Progress& progress) {
     const RayBundle rays(*scene.volume, tf, seen.view, kCoverageRays, progress.phase("coverage"));
     remarks.dark = darkeningOf(rays, histogram, tf, result.tf, options, again);
     std::vector<std::string> notices = opened.notices();
-    if (o.outTf)
-        addTo(notices, writeTfFile(result.tf, scene.volume->range(), *o.outTf, scene.volume->geometry(),
-                                   scene.volume->dataRange()));
+    if (o.outTf) addTo(notices, writeTfFile(result.tf, *scene.volume, *o.outTf));
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
     addRemarks(json, remarks.outcome, remarks.dark);
     if (options.profile != Profile::Default) json["profile"] = name(options.profile);

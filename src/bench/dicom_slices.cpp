@@ -1,12 +1,14 @@
 #include "bench/dicom_slices.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <fstream>
-#include <type_traits>
-#include <variant>
+#include <span>
 
 #include "base/error.h"
 #include "base/round_numbers.h"
+#include "volume/formats/writer.h"
 
 namespace pellucid {
 
@@ -46,31 +48,25 @@ std::string headOf(const Volume& volume, int slice, int bits, bool isSigned) {
 } // namespace
 
 bool fitsDicom(const Volume& volume) {
-    if (std::endian::native != std::endian::little) return false; // pixels are written as they lie
-    return std::visit(
-        [](const auto& samples) {
-            using T = typename std::decay_t<decltype(samples)>::value_type;
-            return std::is_integral_v<T> && sizeof(T) <= 2;
-        },
-        volume.samples());
+    constexpr std::array kFit{SampleType::U8, SampleType::I8, SampleType::U16, SampleType::I16};
+    return std::endian::native == std::endian::little && // pixels are written as they lie
+           std::ranges::find(kFit, volume.sampleType()) != kFit.end();
 }
 
 void writeDicomSlices(const Volume& volume, const std::string& folder) {
-    const Int3 dims = volume.dims();
-    const auto pixels = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
-    std::visit(
-        [&](const auto& samples) {
-            using T = typename std::decay_t<decltype(samples)>::value_type;
-            for (int z = 0; z < dims.z; ++z) {
-                const auto* from = reinterpret_cast<const char*>(samples.data() + static_cast<std::size_t>(z) * pixels);
-                const std::string path = folder + "/" + std::to_string(z) + ".dcm";
-                std::ofstream out(path, std::ios::binary); // hundreds of files need not each be on the disk
-                out << headOf(volume, z, 8 * sizeof(T), std::is_signed_v<T>)
-                    << element(0x7fe00010, "OW", std::string(from, pixels * sizeof(T)));
-                if (!out.flush()) throw FileError("it cannot be written", path, "make room");
-            }
-        },
-        volume.samples());
+    const SampleType type = volume.sampleType();
+    const bool isSigned = type == SampleType::I8 || type == SampleType::I16;
+    const int slices = volume.dims().z, bits = 8 * static_cast<int>(bytesPerSample(type));
+    const std::span<const std::byte> all = sampleBytes(volume);
+    const std::size_t each = all.size() / static_cast<std::size_t>(slices);
+    for (int z = 0; z < slices; ++z) {
+        const auto pixels = all.subspan(static_cast<std::size_t>(z) * each, each);
+        const std::string path = folder + "/" + std::to_string(z) + ".dcm";
+        std::ofstream out(path, std::ios::binary); // hundreds of files need not each be on the disk
+        out << headOf(volume, z, bits, isSigned)
+            << element(0x7fe00010, "OW", std::string(reinterpret_cast<const char*>(pixels.data()), pixels.size()));
+        if (!out.flush()) throw FileError("it cannot be written", path, "make room");
+    }
 }
 
 } // namespace pellucid

@@ -11,18 +11,27 @@
 using namespace pellucid;
 using namespace pellucid::gui;
 
-TEST_CASE("what the clip box leaves opens at full resolution, and the whole volume again", "[window][large]") {
-    const QTemporaryDir folder;
+namespace {
+
+/// A file of 16³ voxels, of which every second along each axis is opened.
+void openHalved(OpenWindow& w, const QTemporaryDir& folder) {
     VolumeSource source;
     source.path = folder.filePath("a.nrrd").toStdString();
     std::vector<std::uint8_t> values;
     for (int i = 0; i < 16 * 16 * 16; ++i) values.push_back(static_cast<std::uint8_t>(i % 251));
     writeNrrd(Volume({{16, 16, 16}}, values), source.path);
     source.downsample = 2;
-    OpenWindow w;
     w.opening().openVolume(source);
     REQUIRE(waitFor([&] { return w.document().volume()->dims() == Int3(8, 8, 8); }));
     w.settle();
+}
+
+} // namespace
+
+TEST_CASE("what the clip box leaves opens at full resolution, and the whole volume again", "[window][large]") {
+    const QTemporaryDir folder;
+    OpenWindow w;
+    openHalved(w, folder);
     auto& region = w.child<QAction>("regionAction");
     auto& whole = w.child<QAction>("wholeVolumeAction");
     CHECK_FALSE(region.isEnabled()); // nothing is cut away
@@ -52,16 +61,8 @@ TEST_CASE("what the clip box leaves opens at full resolution, and the whole volu
 
 TEST_CASE("a coarser copy that is saved is said to be one, though its note was closed", "[window][large]") {
     const QTemporaryDir folder;
-    VolumeSource source;
-    source.path = folder.filePath("a.nrrd").toStdString();
-    std::vector<std::uint8_t> values;
-    for (int i = 0; i < 16 * 16 * 16; ++i) values.push_back(static_cast<std::uint8_t>(i % 251));
-    writeNrrd(Volume({{16, 16, 16}}, values), source.path);
-    source.downsample = 2;
     OpenWindow w;
-    w.opening().openVolume(source);
-    REQUIRE(waitFor([&] { return w.document().volume()->dims() == Int3(8, 8, 8); }));
-    w.settle();
+    openHalved(w, folder);
     w.services().notices().clear();
     QSignalSpy saved(&w.saving(), &SaveController::volumeSaved);
     w.saving().saveVolume({folder.filePath("b.nrrd")});

@@ -285,6 +285,7 @@ TEST_CASE("a component of a file is a choice that can be undone", "[display]") {
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     CHECK(w.document().volume()->range() == ValueRange{0, 63});
     w.child<QDoubleSpinBox>("windowLo"); // the panel is there though hidden
+    w.child<QAction>("displayAction").trigger();
     auto& component = w.child<QSpinBox>("componentSpin");
     REQUIRE(waitFor([&] { return component.maximum() == 1; })); // of two numbers, counted from 0
     CHECK(component.isEnabled());

@@ -163,8 +163,7 @@ bool SaveController::saveTf(const QString& path) {
         const Scene& scene = m_services.store().committed();
         const bool whole = !isWrittenForOthers(path.toStdString()); // else what another program knows of it
         const std::vector<std::string> lost =
-            writeTfFile(whole ? *scene.session.tf() : scene.tf, scene.volume->range(), path.toStdString(),
-                        scene.volume->geometry(), scene.volume->dataRange());
+            writeTfFile(whole ? *scene.session.tf() : scene.tf, *scene.volume, path.toStdString());
         for (const std::string& loss : lost) m_services.notices().add({QString::fromStdString(loss)});
         if (whole) {
             setTfPath(path);

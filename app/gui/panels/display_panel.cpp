@@ -45,6 +45,12 @@ class DisplayPanel : public QWidget {
 public:
     DisplayPanel(Services& services, OpenController& opening, QWidget* parent);
 
+protected:
+    void showEvent(QShowEvent* event) override {
+        QWidget::showEvent(event);
+        follow();
+    }
+
 private:
     void addRows(QFormLayout& form);
     void follow();
@@ -184,15 +190,19 @@ void DisplayPanel::follow() {
     followComponent(ready);
 }
 
-/// How many there are the header tells, which takes a moment.
+/// How many there are the header tells, which takes a moment, or more of a folder: not before it is seen.
 void DisplayPanel::followComponent(bool ready) {
     const Scene& scene = m_services.scene();
     const VolumeSource& source = dataVariable(scene.session).source;
     const bool isFile = !source.isSample() && !source.raw;
     VolumeSource first = scene.series->listing().frames.front().source;
     first.component = 0;
-    if (isFile && m_lookedAt != first) {
+    if (m_lookedAt != first) {
+        m_components.cancel();
         m_componentCount = kMostComponents;
+        m_lookedAt.reset();
+    }
+    if (isFile && !m_lookedAt && isVisible()) {
         m_lookedAt = first;
         m_components.start(first, QString::fromStdString(first.path));
     }

@@ -12,6 +12,7 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "base/base64.h"
 #include "base/check.h"
 #include "base/text.h"
 #include "foreign/arrays/array_axes.h"
@@ -114,13 +115,12 @@ constexpr char kOneEntry = '1'; ///< in place of the letter of an axis that noth
 
 /// Bytes of a text in base64; empty where it is none.
 std::string bytesInBase64(const std::string& text) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string bytes;
     std::uint32_t bits = 0;
     int count = 0;
     for (const char c : text.substr(0, text.find('='))) {
-        const std::size_t digit = kDigits.find(c);
-        if (digit == std::string_view::npos) return {};
+        const int digit = base64Digit(c);
+        if (digit < 0) return {};
         bits = bits << 6 | static_cast<std::uint32_t>(digit);
         count += 6;
         if (count < 8) continue;

@@ -173,4 +173,8 @@ std::vector<std::string> writeTfFile(const TransferFunction& tf, const std::opti
     return std::move(written.losses);
 }
 
+std::vector<std::string> writeTfFile(const TransferFunction& tf, const Volume& volume, const std::string& path) {
+    return writeTfFile(tf, volume.range(), path, volume.geometry(), volume.dataRange());
+}
+
 } // namespace pellucid

@@ -51,6 +51,8 @@ std::vector<std::string> openingNotices(const ReadTf& read, const Geometry& geom
 std::vector<std::string> writeTfFile(const TransferFunction& tf, const std::optional<ValueRange>& window,
                                      const std::string& path, const std::optional<Geometry>& volume = {},
                                      const std::optional<ValueRange>& data = {});
+/// The same for a volume, in its window.
+std::vector<std::string> writeTfFile(const TransferFunction& tf, const Volume& volume, const std::string& path);
 /// Whether writeTfFile() writes what is made for another program.
 bool isWrittenForOthers(const std::string& path);
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "base/base64.h"
 #include "volume/formats/file_check.h"
 
 namespace pellucid {
@@ -12,15 +13,6 @@ namespace pellucid {
 namespace {
 
 constexpr std::size_t kPiece = 1u << 18;
-
-int base64Digit(int c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    if (c == '+') return 62;
-    if (c == '/') return 63;
-    return -1;
-}
 
 /// What the header says.
 struct Header {
