@@ -31,7 +31,7 @@ need() {
     scripts/setup.sh "${missing[@]}"
 }
 
-on_display() { xvfb-run -a -s "-screen 0 1600x1000x24" "$@"; }
+on_display() { xvfb-run -a -s "-noreset -screen 0 1600x1000x24" "$@"; }
 
 check_format() {
     need clang-format clang-format

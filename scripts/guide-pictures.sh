@@ -44,7 +44,7 @@ wants() {
 }
 
 # window NAME ARGUMENT…
-window() { xvfb-run -a -s "-screen 0 1600x1100x24" "$build/bin/window_pictures" --out "$out/$1.png" "${@:2}"; }
+window() { xvfb-run -a -s "-noreset -screen 0 1600x1100x24" "$build/bin/window_pictures" --out "$out/$1.png" "${@:2}"; }
 picture() { if wants "$1"; then window "$@"; fi; }
 render() { "$cli" render "$@" --no-metadata >/dev/null; }
 # sheet NAME COLUMNS CELL FILE…: side by side, with fine lines between; of 256 colours, which keeps it small.

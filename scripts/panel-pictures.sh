@@ -11,7 +11,7 @@ cmake --build "$build" --target window_pictures >/dev/null
 mkdir -p "$folder"
 for scale in 1 2 3; do
     for theme in dark light; do
-        QT_SCALE_FACTOR=$scale xvfb-run -a -s "-screen 0 $((1280 * scale + 40))x$((800 * scale + 40))x24" \
+        QT_SCALE_FACTOR=$scale xvfb-run -a -s "-noreset -screen 0 $((1280 * scale + 40))x$((800 * scale + 40))x24" \
             "$build/bin/window_pictures" --size 1280x800 --theme "$theme" --sample-size 24 --frames 0:11 \
             --panels "$folder/$theme-$scale" sample:vortex
     done

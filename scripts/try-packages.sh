@@ -85,7 +85,7 @@ inside sh -ec 'cd /tmp && cmake -S /usr/share/doc/libpellucid-dev/examples/share
 
 install pellucid "$(deb pellucid)" xvfb xauth fonts-dejavu-core desktop-file-utils appstream shared-mime-info
 inside sh -ec 'cd /tmp
-    xvfb-run -a -s "-screen 0 1600x1000x24" pellucid --screenshot window.png --size 1280x800 knee.nrrd
+    xvfb-run -a -s "-noreset -screen 0 1600x1000x24" pellucid --screenshot window.png --size 1280x800 knee.nrrd
     desktop-file-validate /usr/share/applications/pellucid.desktop
     appstreamcli validate --no-net /usr/share/metainfo/*ellucid*.xml
     grep -q x-nrrd /usr/share/mime/globs2

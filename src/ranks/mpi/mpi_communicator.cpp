@@ -32,15 +32,18 @@ void require(int code, const char* doing) {
 }
 
 /// Waits for what has been begun. MPI's own calls ask without a pause, and take the processor from ranks that have
-/// something to do; here it is asked every so often, once the answer is not at hand.
+/// something to do; here the pauses grow with the wait, so that asking costs little however long the others take, and
+/// the answer is seen a quarter later at most.
 void finish(std::span<MPI_Request> requests, const char* doing, const Communicator::Work& meanwhile = {}) {
-    constexpr std::chrono::microseconds kAtHand{50}, kPause{50};
+    constexpr std::chrono::microseconds kAtHand{50}, kLongestPause{10'000};
     const auto begin = std::chrono::steady_clock::now();
     for (int done = 0;;) {
         require(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE), doing);
         if (done != 0) return;
         if (meanwhile && meanwhile()) continue;
-        if (std::chrono::steady_clock::now() - begin > kAtHand) std::this_thread::sleep_for(kPause);
+        const std::chrono::nanoseconds waited = std::chrono::steady_clock::now() - begin;
+        if (waited > kAtHand)
+            std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(waited / 4, kLongestPause));
     }
 }
 void finish(MPI_Request request, const char* doing, const Communicator::Work& meanwhile = {}) {
