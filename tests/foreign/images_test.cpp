@@ -295,6 +295,66 @@ TEST_CASE("pages of OME-TIFF are the pictures that TiffData says", "[images]") {
         CHECK(pagesOf(last) == std::vector{3, 4, 5});
         CHECK(pagesOf(load(6, ome(omeImage(stack, "") + omeImage(stack, "")))) == std::vector{0, 1, 2});
     }
+    SECTION("of the image that is chosen") {
+        // Of 3 and 2 slices, 5 and 7 nm wide: pages 0 to 2, and 3 and 4. The third is in another file.
+        const auto image = [&](const std::string& name, const std::string& pixels, const std::string& elements) {
+            std::string text = omeImage(pixels, elements);
+            return text.replace(text.find("cells"), 5, name);
+        };
+        const std::string text =
+            ome(image("A &amp; B", stack + " PhysicalSizeX=\"5\" PhysicalSizeY=\"5\" PhysicalSizeZ=\"5\"",
+                      "<TiffData IFD=\"0\" PlaneCount=\"3\"/>") +
+                image("", "SizeZ=\"2\" SizeT=\"1\" PhysicalSizeX=\"7\" PhysicalSizeY=\"7\" PhysicalSizeZ=\"9\"",
+                      "<TiffData IFD=\"3\" PlaneCount=\"2\"/>") +
+                image("A &amp; B", "SizeZ=\"1\" SizeC=\"2\"",
+                      "<TiffData IFD=\"0\"><UUID FileName=\"b.ome.tif\">urn:uuid:b</UUID></TiffData>"));
+        VolumeSource source = at(folder.write("a.ome.tif", tiffFile(pages(5, text))));
+        CHECK(mayHoldSeveral(source.path));
+        const FileContents contents = contentsOf(source);
+        CHECK(contents.arrays == std::vector<std::string>{"A & B", "image 2", "A & B (2)"});
+        CHECK(contents.array == "A & B");
+        CHECK(contents.details ==
+              std::vector<std::string>{"3 × 2 × 3, u16", "3 × 2 × 2, u16", "3 × 2 × 1, u16, 2 channels, in b.ome.tif"});
+        for (const char* wanted : {"image 2", "2"}) {
+            source.array = wanted;
+            const Volume second = loadVolume(source);
+            CHECK(pagesOf(second) == std::vector{3, 4});
+            CHECK(second.geometry().spacing == Vec3(7, 7, 9));
+            CHECK(second.notices.empty());
+            CHECK(loadMiddleSlice(source).value(0) == 400);
+            CHECK(contentsOf(source).array == "image 2");
+        }
+        source.array = "A & B";
+        CHECK(pagesOf(loadVolume(source)) == std::vector{0, 1, 2});
+        source.array = "C";
+        CHECK_THROWS_WITH(loadVolume(source), Contains("no image 'C'") && Contains("'A & B', 'image 2', 'A & B (2)'"));
+        source.array = "A & B (2)";
+        CHECK_THROWS_WITH(loadVolume(source), Contains("is not in this file") && Contains("open b.ome.tif"));
+        // The first image that is in this file is opened, not the pages of this file as the first one.
+        const auto in = [&](const std::string& name, int slices, const std::string& file) {
+            return image(name, "SizeZ=\"" + std::to_string(slices) + "\"",
+                         "<TiffData><UUID FileName=\"" + file + "\">urn:uuid:" + file + "</UUID></TiffData>");
+        };
+        const Volume own = load(2, ome(in("one", 3, "b.ome.tif") + in("two", 2, "a.ome.tif")));
+        CHECK(pagesOf(own) == std::vector{0, 1});
+        CHECK(hasNotice(own, "image 2 of 2, 'two', is shown"));
+        // Under another name it may be either.
+        const Volume either = load(2, ome(in("one", 3, "b.ome.tif") + in("two", 2, "c.ome.tif")));
+        CHECK(pagesOf(either) == std::vector{0, 1});
+        CHECK(hasNotice(either, "other files (b.ome.tif, c.ome.tif) but not one of this name"));
+        // Which pages the second image has is not said.
+        source = at(folder.write("a.ome.tif", tiffFile(pages(6, ome(omeImage(stack, "") + omeImage(stack, ""))))));
+        source.array = "2";
+        CHECK_THROWS_WITH(loadVolume(source), Contains("does not say which pages are those of image 2 of 2"));
+        // One image has a name, too; others have none.
+        source = at(folder.write("a.ome.tif", tiffFile(pages(3, ome(omeImage(stack, ""))))));
+        CHECK(contentsOf(source).arrays.empty());
+        source.array = "cells";
+        CHECK(pagesOf(loadVolume(source)) == std::vector{0, 1, 2});
+        source = at(folder.write("a.tif", tiffFile(pages(3))));
+        source.array = "cells";
+        CHECK_THROWS_WITH(loadVolume(source), Contains("pictures have no names"));
+    }
     SECTION("where others are in other files") {
         const auto in = [](const std::string& file, const std::string& uuid) {
             return "><UUID FileName=\"" + file + "\">" + uuid + "</UUID></TiffData>";
@@ -448,6 +508,48 @@ TEST_CASE("a picture that is missing in a folder is named", "[images]") {
     CHECK(loadVolume(at(folder.path("slices"))).notices.empty());
     folder.write("slices/img900.tif", tiffFile({pages(1).back()}));
     CHECK(hasNotice(loadVolume(at(folder.path("slices"))), "895 pictures are missing between the numbered ones:"));
+}
+
+TEST_CASE("pictures of a folder are as far apart as they say", "[images]") {
+    const auto load = [](const std::vector<std::pair<std::string, int>>& files) {
+        const TempFolder folder;
+        fs::create_directory(folder.path("slices"));
+        for (std::size_t n = 0; n < files.size(); ++n)
+            folder.write("slices/s" + std::to_string(n) + ".tif", tiffFile(pages(1, files[n].first, files[n].second)));
+        return loadVolume(at(folder.path("slices")));
+    };
+    const std::string imageJ = "ImageJ=1.53t\nunit=micron\n";
+    // 4 pixels to a micrometre.
+    const Volume all = load({{imageJ + "spacing=1.5\n", 4}, {imageJ + "spacing=1.5\n", 4}});
+    CHECK(all.geometry().spacing == Vec3(0.25, 0.25, 1.5));
+    CHECK(all.notices.empty());
+    const Volume open = load({{imageJ, 4}, {imageJ, 4}});
+    CHECK(open.geometry().spacing == Vec3(0.25, 0.25, 1));
+    CHECK(hasNotice(open, "do not say how far slices are apart: 1 is taken"));
+    for (const auto& other : {std::pair(imageJ, 5), std::pair(std::string(), 4)}) {
+        const Volume differ = load({{imageJ, 4}, {imageJ, 4}, other});
+        CHECK(differ.geometry().spacing == Vec3(0.25, 0.25, 1));
+        CHECK(hasNotice(differ, "s2.tif says another distance between pixels than s0.tif"));
+    }
+    const Volume apart = load({{imageJ + "spacing=2\n", 4}, {imageJ + "spacing=3\n", 4}});
+    CHECK(apart.geometry().spacing == Vec3(0.25, 0.25, 2));
+    CHECK(hasNotice(apart, "s1.tif says another distance"));
+    // Resolution alone is that of a print.
+    CHECK(load({{"", 72}, {"", 72}}).geometry().spacing == Vec3(1));
+    const auto omeText = [](const std::string& z) {
+        return ome(
+            omeImage("SizeZ=\"1\" PhysicalSizeX=\"500\" PhysicalSizeXUnit=\"nm\" PhysicalSizeY=\"0.25\"" + z, ""));
+    };
+    // 500 nm, 0.25 µm and 2 µm.
+    const std::string known = omeText(" PhysicalSizeZ=\"2\"");
+    const Volume micro = load({{known, 0}, {known, 0}});
+    CHECK(micro.geometry().spacing.x == 500);
+    CHECK(micro.geometry().spacing.y == Approx(250));
+    CHECK(micro.geometry().spacing.z == Approx(2000));
+    CHECK(micro.notices.empty());
+    const Volume flat = load({{omeText(""), 0}, {omeText(""), 0}});
+    CHECK(flat.geometry().spacing.z == 1);
+    CHECK(hasNotice(flat, "1 is taken"));
 }
 
 TEST_CASE("a picture alone is refused as one slice", "[images]") {

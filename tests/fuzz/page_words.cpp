@@ -16,6 +16,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     page.shape.samples = size % 2 == 0 ? 1 : 3;
     page.fileName = "a.ome.tif";
     const PageOrder order = pageOrderIn(page);
+    for (const ImageInFile& image : imagesNamedIn(page)) {
+        require(!image.name.empty(), "images have names");
+        require(image.firstPage >= 0, "pages are counted");
+    }
+    const SliceSpacing slices = sliceSpacingIn(page);
+    for (int a = 0; a < 3; ++a)
+        require(slices.spacing[a] > 0 && std::isfinite(slices.spacing[a]), "slices are a length apart");
     constexpr int kMost = 1'000'000;
     require(order.slices >= 0 && order.slices <= kMost, "slices can be counted");
     require(order.channels >= 1 && order.channels <= kMost, "channels can be counted");

@@ -62,7 +62,8 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     addValue(app, "--array", "NAME", array, anyText,
              "array of a file with several (default: its active scalars, else the largest or the first)", kGroup);
     addValue(app, "--series", "NAME", array, anyText,
-             "series of a folder of DICOM files: its name, number or UID (default: the one with the most slices)",
+             "series of a folder of DICOM files: its name, number or UID (default: the one with the most slices); "
+             "or image of an OME-TIFF: its name, or its number from 1 (default: the first one)",
              kGroup);
     addValue(
         app, "--cache", "MIB",

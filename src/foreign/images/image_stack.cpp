@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -42,14 +43,63 @@ int stepOf(const std::set<int>& indices) {
                : 0;
 }
 
+/// Of a page that may be none of this image's; empty: of a type that cannot be read.
+std::optional<PageShape> shapeOfAny(PictureFile& file) {
+    try {
+        return file.shape();
+    } catch (const FileError&) {
+        return {};
+    }
+}
+
+FirstPage firstPageOf(PictureFile& file, const std::string& path) {
+    return {file.description(), file.pixelsPerUnit(0), file.pixelsPerUnit(1), shapeOfAny(file).value_or(PageShape{}),
+            std::filesystem::path(path).filename().string()};
+}
+
+UsageError hasNoNames(const std::string& path, const std::string& wanted) {
+    return {"there is no image " + inQuotes(wanted), path, "pictures have no names: leave it out"};
+}
+
+/// Which image is wanted: by its name or, where none has this name, by its number from 1. Without a wish the first that
+/// is in this file. Throws UsageError where there is none.
+std::size_t chosenOf(const std::vector<ImageInFile>& all, const std::string& wanted, const std::string& path) {
+    if (wanted.empty()) {
+        const auto first = std::ranges::find_if(all, [](const ImageInFile& image) { return image.elsewhere.empty(); });
+        return first == all.end() ? 0 : static_cast<std::size_t>(first - all.begin());
+    }
+    if (all.empty()) throw hasNoNames(path, wanted);
+    auto found = std::ranges::find(all, wanted, &ImageInFile::name);
+    for (std::size_t i = 0; i < all.size() && found == all.end(); ++i)
+        if (wanted == std::to_string(i + 1)) found = all.begin() + static_cast<std::ptrdiff_t>(i);
+    if (found == all.end()) {
+        constexpr std::size_t kMostNamed = 20;
+        const auto nameOf = [](const ImageInFile& image) { return inQuotes(image.name); };
+        throw UsageError("there is no image " + inQuotes(wanted), path,
+                         "there " + std::string(all.size() == 1 ? "is " : "are ") +
+                             joined(std::span(all).first(std::min(all.size(), kMostNamed)), ", ", nameOf) +
+                             (all.size() > kMostNamed ? ", …" : ""));
+    }
+    if (!found->elsewhere.empty())
+        throw UsageError("image " + inQuotes(found->name) + " is not in this file", path, "open " + found->elsewhere);
+    return static_cast<std::size_t>(found - all.begin());
+}
+
+/// Whether pixels are as far apart, but for rounding.
+bool isSameSpacing(const SliceSpacing& a, const SliceSpacing& b) {
+    constexpr double kRounding = 1e-5;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(a.spacing[axis] - b.spacing[axis]) > kRounding * a.spacing[axis]) return false;
+    return a.isApartKnown == b.isApartKnown;
+}
+
 } // namespace
 
 ImageStack::ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before, OpenPictures open)
     : m_open(open), m_path(path) {
-    if (!wanted.empty())
-        throw UsageError("there is no array " + inQuotes(wanted), path, "pictures have no names: leave it out");
     std::error_code ec;
     const bool isFolder = std::filesystem::is_directory(path, ec);
+    if (isFolder && !wanted.empty()) throw hasNoNames(path, wanted);
     m_files = isFolder ? imagesIn(path) : std::vector<std::string>{path};
     std::size_t passedOver = 0, others = 0;
     std::set<int> named;               // where the file says which pages it means
@@ -57,19 +107,10 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
     for (std::size_t f = 0; f < m_files.size(); ++f) {
         before(bytesOfFile(m_files[f]));
         const auto file = m_open(m_files[f]);
-        // Of a page that may be none of this image's; empty: of a type that cannot be read.
-        const auto shapeOfAny = [&]() -> std::optional<PageShape> {
-            try {
-                return file->shape();
-            } catch (const FileError&) {
-                return {};
-            }
-        };
         for (int page = 0; page < kMostPages && file->goTo(page); ++page) {
+            if (page == 0 && isFolder) compareSpacing(*file, f);
             if (page == 0 && !isFolder) {
-                m_order =
-                    pageOrderIn({file->description(), file->pixelsPerUnit(0), file->pixelsPerUnit(1),
-                                 shapeOfAny().value_or(PageShape{}), std::filesystem::path(path).filename().string()});
+                findOrder(*file, wanted);
                 named.insert(m_order.pages.begin(), m_order.pages.end());
             }
             if (!named.empty() && !named.contains(page)) { // of another image
@@ -81,7 +122,7 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
             } else if (isFolder && !(file->shape() == m_shape)) {
                 throw failure(m_files[f], "the pictures of this folder are not alike: this one has " +
                                               textOf(file->shape()) + ", the first " + textOf(m_shape));
-            } else if (!isFolder && shapeOfAny() != m_shape) {
+            } else if (!isFolder && shapeOfAny(*file) != m_shape) {
                 ++passedOver; // a thumbnail, or a coarser copy
                 continue;
             }
@@ -95,13 +136,67 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
         throw failure(path, others > 0 ? "its OME-XML names pages that it does not have" : "there is no picture in it");
     addPlainPages();
     m_notices.insert(m_notices.begin(), m_order.notices.begin(), m_order.notices.end());
-    if (others > 0)
+    if (others > 0 && m_imageNames.empty()) // where there are several images, they are of these
         m_notices.push_back(pagesText(others) +
                             (others == 1 ? " does not belong to this image, according to its OME-XML, and is left out"
                                          : " do not belong to this image, according to its OME-XML, and are left out"));
     if (passedOver > 0) m_notices.push_back(pagesText(passedOver) + " of another size or type passed over");
     if (isFolder) noteMissing();
+    if (isFolder) noteSpacing();
     putInOrder();
+}
+
+/// What the first page of a file, where it stands, says of its pages: of those of the image that is wanted.
+void ImageStack::findOrder(PictureFile& file, const std::string& wanted) {
+    FirstPage first = firstPageOf(file, m_path);
+    const std::vector<ImageInFile> all = imagesNamedIn(first);
+    first.image = chosenOf(all, wanted, m_path);
+    if (all.size() < 2) {
+        m_order = pageOrderIn(first);
+        return;
+    }
+    const ImageInFile& image = all[first.image];
+    if (image.firstPage > 0 && file.goTo(image.firstPage)) first.shape = shapeOfAny(file).value_or(first.shape);
+    file.goTo(0);
+    m_order = pageOrderIn(first);
+    m_image = image.name;
+    for (const ImageInFile& one : all) {
+        m_imageNames.push_back(one.name);
+        m_imageDetails.push_back(one.details);
+    }
+    const std::string number = std::to_string(first.image + 1) + " of " + std::to_string(all.size());
+    if (m_order.pages.empty() && first.image > 0)
+        throw FileError("its OME-XML does not say which pages are those of image " + number + ", " + inQuotes(m_image),
+                        m_path, "save this image in a file of its own");
+    if (wanted.empty())
+        m_order.notices.insert(m_order.notices.begin(), "image " + number + ", " + inQuotes(m_image) + ", is shown");
+}
+
+/// Holds what a file of a folder, the one of this number, says of the distance between pixels against the first one.
+void ImageStack::compareSpacing(PictureFile& file, std::size_t number) {
+    constexpr std::uint64_t kMostText = 8u << 20; // OME-XML may describe all files in each
+    if (!m_otherSpacing.empty()) return;
+    const FirstPage page = firstPageOf(file, m_files[number]);
+    m_textBytes += page.description.size();
+    if (m_sliceSpacing && m_textBytes > kMostText) return;
+    SliceSpacing spacing = sliceSpacingIn(page);
+    if (!m_sliceSpacing)
+        m_sliceSpacing = std::move(spacing);
+    else if (!isSameSpacing(*m_sliceSpacing, spacing))
+        m_otherSpacing = m_files[number];
+}
+
+/// Takes the spacing that the files of a folder state, and says what they leave open.
+void ImageStack::noteSpacing() {
+    const SliceSpacing& first = *m_sliceSpacing;
+    m_order.spacing = first.spacing;
+    m_notices.insert(m_notices.end(), first.notices.begin(), first.notices.end());
+    if (!m_otherSpacing.empty())
+        m_notices.push_back(
+            std::filesystem::path(m_otherSpacing).filename().string() + " says another distance between pixels than " +
+            std::filesystem::path(m_files.front()).filename().string() + ", which is taken for all pictures");
+    if (!first.isApartKnown && first.spacing != Vec3(1))
+        m_notices.emplace_back("the files do not say how far slices are apart: 1 is taken");
 }
 
 /// Says which numbers are missing between those of the pictures in a folder.
@@ -203,6 +298,7 @@ ReaderLayout ImageStack::layout(int step) const {
     if (m_order.channels > 1) layout.axes.push_back({m_order.channels, true});
     layout.spacing = m_order.spacing;
     layout.scaling = m_order.scaling;
+    layout.array = m_image;
     layout.notices = m_notices;
     findPlain(step, answer);
     return answer;
@@ -229,6 +325,8 @@ void ImageStack::findPlain(int step, ReaderLayout& answer) const {
 FileContents ImageStack::contents() const {
     FileContents contents = contentsOf(layout(0).layout);
     contents.steps = m_order.steps;
+    contents.arrays = m_imageNames;
+    contents.details = m_imageDetails;
     if (m_order.stepSeconds > 0 && m_order.steps > 1) {
         contents.timeUnit = "s";
         for (int step = 0; step < m_order.steps; ++step) contents.times.push_back(step * m_order.stepSeconds);

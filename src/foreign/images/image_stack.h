@@ -17,8 +17,9 @@ using OpenPictures = std::unique_ptr<PictureFile> (*)(const std::string& path);
 
 class ImageStack final : public ForeignVolume {
 public:
-    /// `path`: a TIFF file, or a folder of pictures of one size in the order in which people count. `wanted` has to be
-    /// empty. Throws FileError for what cannot be read, or where pictures are not alike.
+    /// `path`: a TIFF file, or a folder of pictures of one size in the order in which people count. `wanted`: an image
+    /// that OME-XML names, or its number from 1; empty: the first one in this file. Throws FileError for what cannot be
+    /// read, or where pictures are not alike, UsageError where there is not the image that is wanted.
     ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before, OpenPictures open);
 
     FileContents contents() const override;
@@ -38,6 +39,9 @@ private:
     const Page& pageAt(int slice, int channel, int step) const;
     void addPlainPages();
     void noteMissing();
+    void findOrder(PictureFile& file, const std::string& wanted);
+    void compareSpacing(PictureFile& file, std::size_t number);
+    void noteSpacing();
     void pickPictures();
     void putInOrder();
     void findPlain(int step, ReaderLayout& answer) const;
@@ -45,9 +49,14 @@ private:
     OpenPictures m_open;
     std::string m_path;
     std::vector<std::string> m_files;
-    std::vector<Page> m_pages; ///< as they follow each other
-    PageOrder m_order;         ///< with all numbers known
-    PageShape m_shape;         ///< of all pages
+    std::vector<Page> m_pages;                             ///< as they follow each other
+    PageOrder m_order;                                     ///< with all numbers known
+    PageShape m_shape;                                     ///< of all pages
+    std::string m_image;                                   ///< which image of the file this is; empty: it has one
+    std::vector<std::string> m_imageNames, m_imageDetails; ///< of all images, where there are several
+    std::optional<SliceSpacing> m_sliceSpacing;            ///< of a folder: what its first file says
+    std::uint64_t m_textBytes = 0;                         ///< of texts that were searched for the spacing
+    std::string m_otherSpacing;                            ///< the first file that says something else
     std::vector<std::string> m_notices;
     mutable std::unique_ptr<PictureFile> m_file; ///< the one that was read last: boxes follow each other
     mutable std::size_t m_opened = 0;            ///< which it is

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include "base/text.h"
@@ -68,9 +69,15 @@ void setStepTime(PageOrder& order, double interval, const std::string& unit) {
         order.notices.push_back("the unit of time " + inQuotes(unit) + " is not known: time steps are counted");
 }
 
-/// Distances between voxels along x, y and z, 0 where they are not known, and their units: all in the unit of the first
-/// that is known, and as far as that where they are not.
-void setSpacing(PageOrder& order, const Vec3& distances, const std::array<std::string, 3>& units) {
+/// How far voxels are apart along x, y and z, as a file says.
+struct Distances {
+    Vec3 numbers{0, 0, 0}; ///< 0: it does not say
+    std::array<std::string, 3> units;
+};
+
+/// All in the unit of the first that is known, and as far as that where they are not.
+void setSpacing(PageOrder& order, const Distances& stated) {
+    const auto& [distances, units] = stated;
     int first = 0;
     while (first < 3 && !(distances[first] > 0)) ++first;
     if (first == 3) return;
@@ -119,11 +126,26 @@ void setCalibration(PageOrder& order, Fields& fields, const PageShape& shape) {
 }
 
 /// Lines "name=value".
-PageOrder orderOfImageJ(const FirstPage& page) {
+Fields fieldsIn(const std::string& description) {
     Fields fields;
-    for (const std::string& text : splitAt('\n', page.description))
+    for (const std::string& text : splitAt('\n', description))
         if (const std::size_t sign = text.find('='); sign != std::string::npos)
             fields[text.substr(0, sign)] = text.substr(sign + 1);
+    return fields;
+}
+
+/// Pixels are 1 wide where ImageJ does not say otherwise.
+Distances distancesOfImageJ(Fields& fields, const FirstPage& page) {
+    const auto width = [](double pixelsPerUnit) { return pixelsPerUnit > 0 ? lengthOf(1 / pixelsPerUnit, 1) : 1; };
+    const auto unit = [&](const char* name) { return fields.contains(name) ? fields[name] : fields["unit"]; };
+    // Negative where slices lie the other way up, which ImageJ does not show either.
+    const double apart = lengthOf(std::abs(numberIn(trimmed(fields["spacing"]))), 0);
+    return {{width(page.pixelsPerUnitX), width(page.pixelsPerUnitY), apart},
+            {unit("unit"), unit("yunit"), unit("zunit")}};
+}
+
+PageOrder orderOfImageJ(const FirstPage& page) {
+    Fields fields = fieldsIn(page.description);
     PageOrder order;
     order.software = "ImageJ";
     order.axes = "czt";
@@ -132,15 +154,13 @@ PageOrder orderOfImageJ(const FirstPage& page) {
     order.slices = countIn(fields["slices"], 0);
     order.steps = countIn(fields["frames"], 1);
     if (order.slices == 0 && (order.channels > 1 || order.steps > 1)) order.slices = 1;
-    // Negative where slices lie the other way up, which ImageJ does not show either.
-    const double apart = lengthOf(std::abs(numberIn(trimmed(fields["spacing"]))), 0);
-    const auto width = [](double pixelsPerUnit) { return pixelsPerUnit > 0 ? lengthOf(1 / pixelsPerUnit, 1) : 1; };
-    const double x = width(page.pixelsPerUnitX), y = width(page.pixelsPerUnitY);
-    if (apart == 0 && x != 1 && std::max(order.images, order.slices) > 1 && order.slices != 1)
+    Distances distances = distancesOfImageJ(fields, page);
+    double& apart = distances.numbers.z;
+    if (apart == 0 && distances.numbers.x != 1 && std::max(order.images, order.slices) > 1 && order.slices != 1)
         order.notices.emplace_back(
             "the file does not say how far slices are apart, which ImageJ leaves out where it is 1: 1 is taken");
-    const auto unit = [&](const char* name) { return fields.contains(name) ? fields[name] : fields["unit"]; };
-    setSpacing(order, {x, y, apart > 0 ? apart : 1}, {unit("unit"), unit("yunit"), unit("zunit")});
+    if (apart == 0) apart = 1;
+    setSpacing(order, distances);
     setStepTime(order, lengthIn(fields["finterval"], 0), fields.contains("tunit") ? fields["tunit"] : "s");
     setCalibration(order, fields, page.shape);
     return order;
@@ -213,11 +233,35 @@ struct TiffData {
     bool isPlain() const { return first == std::array{0, 0, 0} && page == 0 && !count; }
 };
 
-/// The first image of a text of OME.
 struct OmeImage {
-    int count = 0; ///< of images that there are
-    std::string name, uuid;
+    std::string name;
+    std::optional<Tags> pixels; ///< at the first tag Pixels
     std::vector<TiffData> data;
+};
+
+/// What a text of OME says; it refers to the text.
+struct OmeText {
+    std::string uuid, metadataFile;
+    std::vector<OmeImage> images;
+    std::string fileName;       ///< the one that has the text
+    bool namesThisFile = false; ///< whether any image has pages here; if none has, it may have got another name
+
+    bool isHere(const TiffData& d) const {
+        return (d.uuid.empty() && d.file.empty()) || (!d.uuid.empty() && d.uuid == uuid) ||
+               (!d.file.empty() && d.file == fileName);
+    }
+    /// The files that images are in, besides this one.
+    std::vector<std::string> otherFiles(std::span<const OmeImage> some) const {
+        std::set<std::string, decltype(&countsBefore)> others(&countsBefore);
+        for (const OmeImage& image : some)
+            for (const TiffData& d : image.data)
+                if (!isHere(d)) others.insert(d.file.empty() ? d.uuid : d.file);
+        return {others.begin(), others.end()};
+    }
+    bool hasPagesHere(const OmeImage& image) const {
+        return image.data.empty() || std::ranges::any_of(image.data, [&](const TiffData& d) { return isHere(d); });
+    }
+    bool isAllElsewhere(const OmeImage& image) const { return namesThisFile && !hasPagesHere(image); }
 };
 
 int wholeIn(const std::string& text, int otherwise) {
@@ -238,6 +282,39 @@ TiffData tiffDataIn(const Tags& tags) {
     return data;
 }
 
+OmeText omeTextIn(const FirstPage& page) {
+    OmeText text;
+    text.fileName = page.fileName;
+    for (Tags tags(page.description); tags.next();) {
+        const std::string name = tags.name();
+        if (name == "OME") text.uuid = tags.get("UUID");
+        if (name == "BinaryOnly") text.metadataFile = tags.get("MetadataFile");
+        if (name == "Image") text.images.emplace_back().name = trimmed(tags.get("Name"));
+        if (text.images.empty()) continue;
+        OmeImage& image = text.images.back();
+        if (name == "Pixels" && !image.pixels) image.pixels = tags;
+        if (name == "TiffData") image.data.push_back(tiffDataIn(tags));
+        if (name == "UUID" && !image.data.empty()) {
+            image.data.back().uuid = tags.text();
+            image.data.back().file = tags.get("FileName");
+        }
+    }
+    std::erase_if(text.images, [](const OmeImage& image) { return !image.pixels; });
+    text.namesThisFile =
+        std::ranges::any_of(text.images, [&](const OmeImage& image) { return text.hasPagesHere(image); });
+    return text;
+}
+
+Distances distancesOfOme(const Tags& pixels) {
+    Distances distances;
+    for (int a = 0; a < 3; ++a) {
+        const std::string name = std::string("PhysicalSize") + "XYZ"[a], unit = pixels.get(name + "Unit");
+        distances.numbers[a] = lengthIn(pixels.get(name), 0);
+        distances.units[static_cast<std::size_t>(a)] = unit.empty() ? "µm" : unit;
+    }
+    return distances;
+}
+
 void readPixels(const Tags& tags, PageOrder& order) {
     order.software = "OME";
     const std::string dimensions = lowerCase(tags.get("DimensionOrder")); // "xyzct"
@@ -246,44 +323,31 @@ void readPixels(const Tags& tags, PageOrder& order) {
     order.slices = countIn(tags.get("SizeZ"), 0);
     order.channels = countIn(tags.get("SizeC"), 1);
     order.steps = countIn(tags.get("SizeT"), 1);
-    const auto unitIn = [&](const std::string& attribute, const char* otherwise) {
-        const std::string unit = tags.get(attribute);
-        return unit.empty() ? otherwise : unit;
-    };
-    setStepTime(order, lengthIn(tags.get("TimeIncrement"), 0), unitIn("TimeIncrementUnit", "s"));
-    Vec3 distances{0, 0, 0};
-    std::array<std::string, 3> units;
-    for (int a = 0; a < 3; ++a) {
-        const std::string name = std::string("PhysicalSize") + "XYZ"[a];
-        distances[a] = lengthIn(tags.get(name), 0);
-        units[static_cast<std::size_t>(a)] = unitIn(name + "Unit", "µm");
-    }
-    setSpacing(order, distances, units);
+    const std::string unit = tags.get("TimeIncrementUnit");
+    setStepTime(order, lengthIn(tags.get("TimeIncrement"), 0), unit.empty() ? "s" : unit);
+    setSpacing(order, distancesOfOme(tags));
 }
 
-/// Which page each picture is. Says what is in other files, and which these are.
-void findPages(PageOrder& order, OmeImage& image, const FirstPage& page) {
+/// Which page each picture of an image is. Says what is in other files, and which these are.
+void findPages(PageOrder& order, const OmeText& text, const OmeImage& image, const FirstPage& page) {
     const long long all = static_cast<long long>(order.slices) * order.channels * order.steps;
-    std::vector<TiffData>& data = image.data;
+    std::vector<TiffData> data = image.data;
     if (data.empty()) data.emplace_back();
-    const auto isHere = [&](const TiffData& d) {
-        return (d.uuid.empty() && d.file.empty()) || (!d.uuid.empty() && d.uuid == image.uuid) ||
-               (!d.file.empty() && d.file == page.fileName);
-    };
-    const auto nameOf = [](const TiffData& d) { return d.file.empty() ? d.uuid : d.file; };
-    std::set<std::string, decltype(&countsBefore)> others(&countsBefore);
-    for (const TiffData& d : data)
-        if (!isHere(d)) others.insert(nameOf(d));
-    const bool isNamed = std::ranges::any_of(data, isHere);
-    if (!isNamed && others.size() > 1) {
-        order.notices.push_back("its OME-XML describes other files (" + someNames({others.begin(), others.end()}) +
+    const std::vector<std::string> others = text.otherFiles({&image, 1});
+    const bool isNamed = text.namesThisFile;
+    if (const auto named = text.otherFiles(text.images); !isNamed && named.size() > 1) {
+        order.notices.push_back("its OME-XML describes other files (" + someNames(named) +
                                 ") but not one of this name: all pages are shown as slices");
         order.slices = 0;
         order.channels = order.steps = 1;
         return;
     }
-    const bool isAll = data.size() == 1 && data.front().isPlain() && image.count < 2;
-    if (isAll || all < 1 || all > kMostPages) return;
+    const bool isPlain = data.size() == 1 && data.front().isPlain();
+    if (isPlain && text.images.size() < 2) return; // all pages
+    // Images before this one have the first pages, and where theirs end is not said.
+    const auto before = std::span(text.images).first(page.image);
+    if (isPlain && std::ranges::any_of(before, [&](const OmeImage& one) { return text.hasPagesHere(one); })) return;
+    if (all < 1 || all > kMostPages) return;
 
     // Where in the order of axes the pictures of each element begin; behind the last where there are none.
     const auto firstOf = [&](const TiffData& d) {
@@ -305,7 +369,7 @@ void findPages(PageOrder& order, OmeImage& image, const FirstPage& page) {
     std::vector<bool> isGiven(static_cast<std::size_t>(all));
     bool isGivenTwice = false;
     for (const TiffData& d : data) {
-        const bool here = isHere(d) || !isNamed; // the only one there is: it has got another name
+        const bool here = text.isHere(d) || !isNamed; // the only one there is: it has got another name
         const long long first = firstOf(d);
         if (first >= all) continue;
         const long long end = d.count ? std::min(all, first + *d.count) : *begins.upper_bound(first);
@@ -323,49 +387,97 @@ void findPages(PageOrder& order, OmeImage& image, const FirstPage& page) {
     if (isGivenTwice)
         order.notices.emplace_back("its OME-XML gives several pages for the same picture: the first one is shown");
     if (order.elsewhere > 0)
-        order.notices.push_back(
-            std::to_string(order.elsewhere) + " of " + std::to_string(all) +
-            " pictures are in other files and are not shown: " + someNames({others.begin(), others.end()}));
+        order.notices.push_back(std::to_string(order.elsewhere) + " of " + std::to_string(all) +
+                                " pictures are in other files and are not shown: " + someNames(others));
 }
 
 PageOrder orderOfOme(const FirstPage& page) {
     PageOrder order;
-    OmeImage image;
-    std::string elsewhere;
-    for (Tags tags(page.description); tags.next();) {
-        const std::string name = tags.name();
-        if (name == "OME") image.uuid = tags.get("UUID");
-        if (name == "BinaryOnly") elsewhere = tags.get("MetadataFile");
-        if (name == "Image" && ++image.count == 1) image.name = tags.get("Name");
-        if (image.count > 1) continue;
-        if (name == "Pixels" && order.software.empty()) readPixels(tags, order);
-        if (name == "TiffData") image.data.push_back(tiffDataIn(tags));
-        if (name == "UUID" && !image.data.empty()) {
-            image.data.back().uuid = tags.text();
-            image.data.back().file = tags.get("FileName");
-        }
-    }
-    if (order.software.empty()) {
-        if (!elsewhere.empty())
-            order.notices.push_back("another file, " + inQuotes(elsewhere) +
+    const OmeText text = omeTextIn(page);
+    if (text.images.empty()) {
+        if (!text.metadataFile.empty())
+            order.notices.push_back("another file, " + inQuotes(text.metadataFile) +
                                     ", describes its pages and how far pixels are apart, and is not read: all pages "
                                     "are shown as slices, pixels 1 apart");
         return order;
     }
+    const OmeImage& image = text.images.at(page.image);
+    readPixels(*image.pixels, order);
     // Channels that the pixels have beside each other are not pages.
     if (page.shape.samples > 1 && order.channels % page.shape.samples == 0) order.channels /= page.shape.samples;
-    if (image.count > 1)
-        order.notices.push_back("image 1 of " + std::to_string(image.count) +
-                                (image.name.empty() ? "" : ", " + inQuotes(image.name) + ",") + " is shown");
-    findPages(order, image, page);
+    findPages(order, text, image, page);
     return order;
+}
+
+bool isOfImageJ(const FirstPage& page) { return page.description.starts_with("ImageJ="); }
+bool isOfOme(const FirstPage& page) { return !isOfImageJ(page) && page.description.find("OME") != std::string::npos; }
+
+/// "3 × 2 × 4, u16, 2 channels, 5 steps".
+std::string detailsOf(const Tags& pixels) {
+    static const std::map<std::string, std::string> kTypes{{"uint8", "u8"},  {"uint16", "u16"}, {"uint32", "u32"},
+                                                           {"int8", "i8"},   {"int16", "i16"},  {"int32", "i32"},
+                                                           {"float", "f32"}, {"double", "f64"}};
+    const auto size = [&](const char* name) { return std::to_string(countIn(pixels.get(name), 1)); };
+    std::string text = size("SizeX") + " × " + size("SizeY") + " × " + size("SizeZ");
+    for (const char* name : {"Type", "PixelType"}) // the latter before 2008
+        if (const std::string type = pixels.get(name); !type.empty()) {
+            const auto known = kTypes.find(type);
+            text += ", " + (known != kTypes.end() ? known->second : printable(type.substr(0, 20)));
+            break;
+        }
+    if (size("SizeC") != "1") text += ", " + size("SizeC") + " channels";
+    if (size("SizeT") != "1") text += ", " + size("SizeT") + " steps";
+    return text;
 }
 
 } // namespace
 
 PageOrder pageOrderIn(const FirstPage& page) {
-    if (page.description.starts_with("ImageJ=")) return orderOfImageJ(page);
-    return page.description.find("OME") != std::string::npos ? orderOfOme(page) : PageOrder();
+    if (isOfImageJ(page)) return orderOfImageJ(page);
+    return isOfOme(page) ? orderOfOme(page) : PageOrder();
+}
+
+std::vector<ImageInFile> imagesNamedIn(const FirstPage& page) {
+    std::vector<ImageInFile> all;
+    if (!isOfOme(page)) return all;
+    const OmeText text = omeTextIn(page);
+    std::set<std::string> taken;
+    for (const OmeImage& image : text.images) {
+        ImageInFile& one = all.emplace_back();
+        const std::string name = image.name.empty() ? "image " + std::to_string(all.size()) : printable(image.name);
+        one.name = name;
+        for (int n = 2; !taken.insert(one.name).second; ++n) one.name = name + " (" + std::to_string(n) + ")";
+        one.details = detailsOf(*image.pixels);
+        if (text.isAllElsewhere(image)) {
+            one.elsewhere = someNames(text.otherFiles({&image, 1}));
+            one.details += ", in " + one.elsewhere;
+        }
+        for (const TiffData& data : image.data)
+            if (text.isHere(data) || !text.namesThisFile) {
+                one.firstPage = data.page;
+                break;
+            }
+    }
+    return all;
+}
+
+SliceSpacing sliceSpacingIn(const FirstPage& page) {
+    Distances distances;
+    if (isOfImageJ(page)) {
+        Fields fields = fieldsIn(page.description);
+        distances = distancesOfImageJ(fields, page);
+    } else if (isOfOme(page)) {
+        const OmeText text = omeTextIn(page);
+        const auto image =
+            std::ranges::find_if(text.images, [&](const OmeImage& one) { return !text.isAllElsewhere(one); });
+        if (image != text.images.end()) distances = distancesOfOme(*image->pixels);
+    }
+    const bool isApartKnown = distances.numbers.z > 0;
+    PageOrder order;
+    order.slices = 1; // nothing is said of slices whose distance is not known
+    setSpacing(order, distances);
+    if (!isApartKnown) order.spacing.z = 1;
+    return {order.spacing, isApartKnown, std::move(order.notices)};
 }
 
 } // namespace pellucid

@@ -18,8 +18,20 @@ struct FirstPage {
     std::string description;
     double pixelsPerUnitX = 0, pixelsPerUnitY = 0; ///< as TIFF has them; 0: it does not say
     PageShape shape;
-    std::string fileName; ///< without its folder
+    std::string fileName;  ///< without its folder
+    std::size_t image = 0; ///< of imagesNamedIn(): the one that is meant
 };
+
+/// An image that OME-XML describes.
+struct ImageInFile {
+    std::string name;      ///< which no other image has
+    std::string details;   ///< "512 × 512 × 20, u16"
+    std::string elsewhere; ///< the files that it is in, where it has no page in this one; empty: it has
+    int firstPage = 0;     ///< in this file
+};
+
+/// All that OME-XML on the first page describes; none where there is no OME-XML.
+std::vector<ImageInFile> imagesNamedIn(const FirstPage& page);
 
 /// How the pages of a file follow each other, and how far pixels are apart.
 struct PageOrder {
@@ -43,5 +55,14 @@ struct PageOrder {
 };
 
 PageOrder pageOrderIn(const FirstPage& page);
+
+/// What a file says that is one slice of several.
+struct SliceSpacing {
+    Vec3 spacing{1, 1, 1};     ///< 1 where it does not say
+    bool isApartKnown = false; ///< whether it says how far slices are apart
+    std::vector<std::string> notices;
+};
+
+SliceSpacing sliceSpacingIn(const FirstPage& page);
 
 } // namespace pellucid

@@ -214,31 +214,28 @@ Volume readMiddle(const VolumeSource& source, const JobControl& job) {
 
 /// A format that a reader process reads.
 template <auto requestFor>
-VolumeFormat foreignFormat(const char* name, std::vector<std::string> suffixes, const char* content,
-                           bool holdsSeveral) {
+VolumeFormat foreignFormat(const char* name, std::vector<std::string> suffixes, const char* content) {
     VolumeFormat format{name,   std::move(suffixes), describe<requestFor>, read<requestFor>, dataFiles<requestFor>,
                         content};
-    format.holdsSeveral = holdsSeveral;
+    format.holdsSeveral = true;
     format.readMiddle = readMiddle<requestFor>;
     return format;
 }
 
 } // namespace
 
-VolumeFormat dicomFormat() {
-    return foreignFormat<dicomRequest>("DICOM", {".dcm", ".dicom", ".ima"}, kDicomContent, true);
-}
+VolumeFormat dicomFormat() { return foreignFormat<dicomRequest>("DICOM", {".dcm", ".dicom", ".ima"}, kDicomContent); }
 
-VolumeFormat imageFormat() { return foreignFormat<imageRequest>("pictures", {".tif", ".tiff"}, kTiffContent, false); }
+VolumeFormat imageFormat() { return foreignFormat<imageRequest>("pictures", {".tif", ".tiff"}, kTiffContent); }
 
-VolumeFormat zarrFormat() { return foreignFormat<zarrRequest>("OME-Zarr", {}, nullptr, true); }
+VolumeFormat zarrFormat() { return foreignFormat<zarrRequest>("OME-Zarr", {}, nullptr); }
 
 VolumeFormat hdf5Format() {
-    return foreignFormat<arrayRequest>("HDF5", {".h5", ".hdf5", ".hdf", ".he5", ".mat"}, kHdf5Content, true);
+    return foreignFormat<arrayRequest>("HDF5", {".h5", ".hdf5", ".hdf", ".he5", ".mat"}, kHdf5Content);
 }
 
 VolumeFormat netCdfFormat() {
-    return foreignFormat<arrayRequest>("NetCDF", {".nc", ".nc4", ".cdf", ".netcdf"}, kNetCdfContent, true);
+    return foreignFormat<arrayRequest>("NetCDF", {".nc", ".nc4", ".cdf", ".netcdf"}, kNetCdfContent);
 }
 
 } // namespace pellucid
