@@ -442,11 +442,13 @@ std::vector<ImageInFile> imagesNamedIn(const FirstPage& page) {
     if (!isOfOme(page)) return all;
     const OmeText text = omeTextIn(page);
     std::set<std::string> taken;
+    std::map<std::string, int> numbers; // the last one that was given to images of a name
     for (const OmeImage& image : text.images) {
         ImageInFile& one = all.emplace_back();
         const std::string name = image.name.empty() ? "image " + std::to_string(all.size()) : printable(image.name);
         one.name = name;
-        for (int n = 2; !taken.insert(one.name).second; ++n) one.name = name + " (" + std::to_string(n) + ")";
+        int& number = numbers.try_emplace(name, 1).first->second;
+        while (!taken.insert(one.name).second) one.name = name + " (" + std::to_string(++number) + ")";
         one.details = detailsOf(*image.pixels);
         if (text.isAllElsewhere(image)) {
             one.elsewhere = someNames(text.otherFiles({&image, 1}));
