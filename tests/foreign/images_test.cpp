@@ -262,9 +262,9 @@ TEST_CASE("pages of OME-TIFF are the pictures that TiffData says", "[images]") {
         CHECK(pagesOf(load(2, names)) == std::vector{1, 0});
     }
     SECTION("with units in XML's own letters") {
-        const std::string places = stack + " PhysicalSizeX=\"500\" PhysicalSizeXUnit=\"nm\" PhysicalSizeY=\"500\" "
-                                           "PhysicalSizeYUnit=\"nm\" PhysicalSizeZ=\"2\" PhysicalSizeZUnit=\"&#181;m\"";
-        const Volume micro = load(3, ome(omeImage(places, "")));
+        const std::string sized = stack + " PhysicalSizeX=\"500\" PhysicalSizeXUnit=\"nm\" PhysicalSizeY=\"500\" "
+                                          "PhysicalSizeYUnit=\"nm\" PhysicalSizeZ=\"2\" PhysicalSizeZUnit=\"&#181;m\"";
+        const Volume micro = load(3, ome(omeImage(sized, "")));
         CHECK(micro.geometry().spacing.z == Approx(4 * micro.geometry().spacing.x)); // 2 µm and 500 nm
     }
     SECTION("not more and not twice") {
