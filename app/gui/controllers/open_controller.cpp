@@ -468,7 +468,10 @@ void OpenController::openCopied() {
 void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec) {
     if (paths.size() == 1 && isSession(paths.front())) return openSession(paths.front());
     VolumeSource source = sourceOf(paths);
-    if (askRawLayout(source)) openChosen(source, tfSpec);
+    if (!askRawLayout(source)) return;
+    const bool isFile = !tfSpec.isEmpty() && namesTfFile(tfSpec);
+    openChosen(source,
+               isFile ? askPreset(tfSpec, m_services.window()) : tfSpec); // who gives up gets the automatic start
 }
 
 void OpenController::openSeries(const Look& look, const FileContents& contents) {
