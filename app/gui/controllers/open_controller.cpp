@@ -309,7 +309,7 @@ void OpenController::openTf(const QString& specOrPath) {
     if (specOrPath == kAutomaticTf) return automaticStartWanted();
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const ReadTf read = readTfNamed(specOrPath.toStdString());
-        const TransferFunction tf = forVolume(read, *store.scene().data);
+        const TransferFunction tf = forScene(read, store.scene());
         const bool isFile = namesTfFile(specOrPath);
         const auto change = [tf, data = store.scene().data](Session& session) {
             TransferFunction placed = tf;
