@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/text.h"
 #include "parse.h"
+#include "session/scene_data.h"
 #include "tf/formats/tf_file.h"
 #include "tf/formats/tf_snippets.h"
 #include "tf_notices.h"
@@ -47,6 +48,7 @@ Target targetNamed(const std::string& name) {
 struct Source {
     TransferFunction tf;                    ///< opacities of one reference length of `geometry`
     std::optional<ValueRange> window, data; ///< of the volume: what it is shown through, and all its values
+    std::string dataOf;                     ///< as frameOfDataRange()
     std::optional<Geometry> geometry;
     std::vector<std::string> notices;
 };
@@ -76,7 +78,8 @@ Source sourceOf(const TfConversion& conversion, const SceneOptions& options, Pro
     if (isAutomatic) ofVolume.tf.spec = spec;
     const Opened opened = resolve(ofVolume, progress, {.use = {}, .byEngine = false, .needsTf = isAutomatic});
     source.geometry = opened.scene.volume->geometry();
-    source.data = opened.scene.volume->dataRange();
+    source.data = dataRangeOf(opened.scene);
+    source.dataOf = frameOfDataRange(opened.scene);
     source.window = read && read->spansData ? *source.data : opened.scene.volume->range();
     source.tf = read ? asWritten(*read, *source.geometry) : opened.scene.tf;
     if (read && read->positions) source.notices.push_back(noDomainNotice(*read->positions, source.window));
@@ -95,7 +98,8 @@ Answer convertTf(const TfConversion& conversion, const SceneOptions& options, co
     if (!options.volume.path) throw UsageError("no transfer function is named", "TF", "give a file, such as a.tf.json");
     const Target target = atOption("--to " + conversion.format, [&] { return targetNamed(conversion.format); });
     const Source source = sourceOf(conversion, options, progress);
-    const TfToWrite writing(source.tf, source.window, source.geometry, presetNameOf(out), source.data);
+    TfToWrite writing(source.tf, source.window, source.geometry, presetNameOf(out), source.data);
+    writing.sayDataIsOf(source.dataOf);
     const WrittenTf written = target.write(writing);
     writeTextAtomically(out, written.text);
     std::vector<std::string> losses = source.notices;

@@ -23,6 +23,7 @@ Answer run(const SceneOptions& options, Progress& progress) {
               {"caption", caption(facts)}, {"alt", altText(facts)},
               {"from", facts.from},        {"lit", facts.lit},
               {"cut", facts.cut},          {"coverage", measures.coverage->coverage}};
+    if (!facts.alone.empty()) json["alone"] = facts.alone;
     Json features = Json::array();
     for (const CaptionFeature& f : facts.features)
         features.push_back({{"name", f.name}, {"vws", f.vws}, {"visibility", f.visibility}});

@@ -171,6 +171,17 @@ void photograph(MainWindow& window, const QString& file) {
         QObject::connect(&window.controllers().opening, failed, &window, fail, Qt::QueuedConnection);
 }
 
+/// While a picture is taken nobody is asked: of several transfer functions in a file, the first one, as on the command
+/// line.
+QString firstPreset(const QString& tf) {
+    try {
+        const std::vector<std::string> names = tfNamesIn(tf.toStdString());
+        if (!names.empty()) return tf + '#' + QString::fromStdString(names.front());
+    } catch (const Error&) { // opening says why
+    }
+    return tf;
+}
+
 int showStudy(const Options& o) {
     const std::string folder = o.study.toStdString();
     openStudy(folder, o.participant.isEmpty() ? newParticipantId(folder) : o.participant.toStdString());
@@ -193,7 +204,7 @@ int showWindows(const Options& o) {
         } else {
             photograph(window, o.screenshot);
         }
-        window.controllers().opening.openAtStart(files, o.tf);
+        window.controllers().opening.openAtStart(files, o.screenshot.isEmpty() ? o.tf : firstPreset(o.tf));
     }
     return QApplication::exec();
 }

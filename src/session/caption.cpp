@@ -73,6 +73,7 @@ std::string viewSentence(const CaptionFacts& facts) {
     if (facts.lit) text += ", lit";
     if (facts.cut) text += ", cut open";
     text += ": " + facts.title;
+    if (!facts.alone.empty()) text += ", " + facts.alone + " alone";
     return facts.frame.empty() ? text : text + ", " + facts.frame;
 }
 
@@ -142,7 +143,10 @@ CaptionFacts captionFacts(const Scene& scene, const Measures& measures, const Oc
     facts.cut = !scene.session.clipping->isNone();
     facts.mode = scene.session.display->mode;
     std::vector<Feature> named = scene.tf.features;
+    const int alone = scene.onlyFeature();
+    if (alone >= 0) facts.alone = printable(named[static_cast<std::size_t>(alone)].name);
     for (std::size_t f = 0; f < measures.features.size(); ++f) {
+        if (alone >= 0 && static_cast<std::size_t>(alone) != f) continue;
         named[f].name = printable(named[f].name);
         using State = CaptionFeature::State;
         facts.features.push_back({named[f].name, measures.features.at(f).vws, measures.features.at(f).visibility,
@@ -150,6 +154,7 @@ CaptionFacts captionFacts(const Scene& scene, const Measures& measures, const Oc
                                   : scene.isEmpty(f) ? State::Empty
                                                      : State::Drawn});
     }
+    if (alone >= 0) return facts; // nothing hides it, and the coverage is that of all
     if (!occlusion.empty()) facts.hides = occlusionWords(occlusion, named, 2);
     if (measures.coverage) facts.coverage = measures.coverage->coverage;
     return facts;
@@ -160,9 +165,11 @@ std::string caption(const CaptionFacts& facts) {
     std::string text = viewSentence(facts) + ".";
     if (facts.mode != RenderMode::Composite) return text;
     const auto isSeen = [](const CaptionFeature& f) { return f.visibility > 0; };
-    if (!facts.features.empty() && std::ranges::none_of(facts.features, isSeen)) return text + " Nothing is visible.";
+    const bool isAlone = !facts.alone.empty(); // then it is seen, even where the others hide all of it
+    if (!isAlone && !facts.features.empty() && std::ranges::none_of(facts.features, isSeen))
+        return text + " Nothing is visible.";
     if (const std::string shares = sharesSentence(facts.features); !shares.empty()) {
-        text += " " + capitalized(shares) + ".";
+        text += " " + (isAlone ? "Where all features are drawn, " + shares : capitalized(shares)) + ".";
         if (facts.coverage)
             text += " Where there is something to see, the picture is " + percentText(*facts.coverage) + " opaque.";
     }
@@ -177,7 +184,7 @@ std::string caption(const CaptionFacts& facts) {
 std::string altText(const CaptionFacts& facts) {
     std::string text = viewSentence(facts);
     const std::vector<std::size_t> order = bySaliency(facts.features);
-    if (facts.mode != RenderMode::Composite || order.empty()) return text + ".";
+    if (facts.mode != RenderMode::Composite || order.empty() || !facts.alone.empty()) return text + ".";
     std::vector<std::string> most;
     for (std::size_t n = 0; n < std::min<std::size_t>(order.size(), 2); ++n) {
         const CaptionFeature& f = facts.features[order[n]];

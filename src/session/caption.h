@@ -27,7 +27,9 @@ struct CaptionFacts {
     bool lit = false;  ///< shaded
     bool cut = false;  ///< some of it is cut away
     RenderMode mode = RenderMode::Composite;
-    std::vector<CaptionFeature> features; ///< in the order of the transfer function
+    std::string
+        alone; ///< the feature whose voxels alone are drawn; its figures are those among all. Empty: all are drawn
+    std::vector<CaptionFeature> features; ///< those that are shown, in the order of the transfer function
     std::vector<std::string> hides;       ///< "skin hides 83 % of bone"
     std::optional<double> coverage; ///< how opaque the picture is where there is something, [0,1]; empty: not known
 };
@@ -41,7 +43,8 @@ std::string directionWords(const Vec3& towardEye, WorldAxes axes);
 CaptionFacts captionFacts(const Scene& scene, const Measures& measures, const OcclusionMatrix& occlusion = {});
 
 /// A few sentences: the view, the shares of up to four features and of the others together, what hides what, what is
-/// left out. Modes other than compositing show no shares: they get the first sentence alone.
+/// left out. Of a feature that is drawn alone: its shares where all are drawn. Modes other than compositing show no
+/// shares: they get the first sentence alone.
 std::string caption(const CaptionFacts& facts);
 
 /// One sentence for those who do not see the picture, shorter: the view, and the two features with most saliency.

@@ -9,6 +9,7 @@
 #include "base/json_file.h"
 #include "base/text.h"
 #include "render/camera_motion.h"
+#include "session/scene_data.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_file.h"
 #include "tf/formats/tf_json.h"
@@ -52,7 +53,7 @@ std::string pathIn(const std::string& folder, const std::string& name) {
 TransferFunction namedTf(const std::string& name, const std::string& folder, const Scene& scene) {
     const auto begins = [&](const char* with) { return name.starts_with(with); };
     const bool isFile = !begins("preset:") && !begins("tents:") && !begins("ramp:");
-    return forVolume(readTfNamed(isFile ? pathIn(folder, name) : name), *scene.data);
+    return forScene(readTfNamed(isFile ? pathIn(folder, name) : name), scene);
 }
 
 void takeState(KeyState& state, const JsonValue& j, const std::string& folder, const Scene& scene) {

@@ -331,7 +331,7 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
         throw UsageError("there is no frame " + std::to_string(*inputs.frame), scene.series->listing().title,
                          "give 0 to " + std::to_string(scene.series->size() - 1));
     if (read) { // how long a path its opacities are of here is known now
-        TransferFunction placed = forVolume(*read, *scene.data);
+        TransferFunction placed = forScene(*read, scene);
         if (!(placed == *tf)) {
             tf = std::move(placed);
             Session changed = scene.session; // apart from the basis, which tells what is new

@@ -15,8 +15,23 @@ VolatilityKind volatilityKind(const Session& session) {
 std::vector<std::string> openingNoticesIn(const Scene& scene, const ReadTf& read) {
     // The published profile takes Voreen's files as the thesis did.
     if (read.opensAsItIs && scene.session.measure->profile == Profile::Published) return {};
-    return openingNotices(read, scene.data->geometry(),
-                          read.spansData ? scene.data->dataRange() : scene.volume->range());
+    return openingNotices(read, scene.data->geometry(), read.spansData ? dataRangeOf(scene) : scene.volume->range());
+}
+
+ValueRange dataRangeOf(const Scene& scene) {
+    const std::optional<ValueRange> all = scene.series->varies() ? scene.series->knownRange() : std::nullopt;
+    return all ? *all : scene.data->dataRange();
+}
+
+std::string frameOfDataRange(const Scene& scene) {
+    if (!scene.series->varies() || scene.series->knownRange()) return {};
+    return "frame " + std::to_string(scene.series->nearest(scene.session.frame));
+}
+
+TransferFunction forScene(const ReadTf& read, const Scene& scene) {
+    TransferFunction tf = forVolume(read, *scene.data);
+    if (const ValueRange range = dataRangeOf(scene); read.spansData && range.lo < range.hi) tf.range = range;
+    return tf;
 }
 
 bool sameOrigin(const Variable& a, const Variable& b) {

@@ -26,6 +26,13 @@ std::vector<std::string> filesOf(const Session& session);
 /// nothing of one that the scene's profile takes as it is.
 std::vector<std::string> openingNoticesIn(const Scene& scene, const ReadTf& read);
 
+/// Smallest and largest value of all frames where they are known without reading one, else those of the present frame.
+ValueRange dataRangeOf(const Scene& scene);
+/// Which frame dataRangeOf() is of, "frame 3"; empty: of all.
+std::string frameOfDataRange(const Scene& scene);
+/// A transfer function that has been read for the present data; what spans them (ReadTf::spansData) gets dataRangeOf().
+TransferFunction forScene(const ReadTf& read, const Scene& scene);
+
 /// The window of the variable that `series` has the values of: its own, or all values.
 ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job = {});
 

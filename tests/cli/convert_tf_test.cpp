@@ -191,3 +191,23 @@ TEST_CASE("answers are written for other programs, too", "[cli][convert]") {
     CHECK_THAT(outcome.err, Catch::Contains("not stored"));
     CHECK(w.jsonAndNotes(Words{"measure"} + kVolume + Words{"--tf", "a.vp"})["features"].size() >= 1);
 }
+
+TEST_CASE("programs that lay a curve over the data get it for all frames of a series", "[cli][tf]") {
+    const Workshop w;
+    const auto volume = [](int first) { // 4³ voxels, from first to first + 63
+        std::string bytes = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n";
+        for (int i = 0; i < 64; ++i) bytes += static_cast<char>(first + i);
+        return bytes;
+    };
+    w.write("d_1.nrrd", volume(10));
+    w.write("d_2.nrrd", volume(60));
+    w.jsonAndNotes({"convert", "tents:2", "--to", "pellucid", "--volume", "d_1.nrrd", "--out", "a.tf.json"});
+    const json told =
+        w.jsonAndNotes({"convert", "a.tf.json", "--to", "itksnap", "--volume", "d_%d.nrrd", "--out", "a.itksnap.xml"});
+    CHECK(says(told["losses"], "all values of the data, 10 to 123")); // 60 + 63
+    CHECK_FALSE(says(told["losses"], "frame 0"));
+    // It is opened where it was written for: the middle of 10 to 123, not that of the first frame.
+    const json again =
+        w.jsonAndNotes({"convert", "a.itksnap.xml", "--to", "pellucid", "--volume", "d_%d.nrrd", "--out", "b.tf.json"});
+    CHECK(again["range"] == json({10, 123}));
+}

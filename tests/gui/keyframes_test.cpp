@@ -188,6 +188,18 @@ TEST_CASE("keys keep what is shown, and the playhead shows what lies between the
     CHECK(w.keys()[2].state == third);
 }
 
+TEST_CASE("the playhead covers no label of the scale", "[keyframes]") {
+    OpenKeyframes w;
+    w.addThree();
+    REQUIRE(waitFor([&] { return w.hasAllPictures(); }));
+    const auto labels = [&](double time) {
+        w.strip().setPlayhead(time);
+        return w.strip().grab().toImage().copy(2, 2, w.strip().width() - 4, 12);
+    };
+    CHECK(labels(0) == labels(2)); // 0 s and 2 s have one
+    CHECK(labels(1.3) == labels(2));
+}
+
 TEST_CASE("the strip has a picture of each key, and of what lies between", "[keyframes]") {
     OpenKeyframes w;
     w.addThree();

@@ -142,6 +142,20 @@ TEST_CASE("a transfer function that cannot be read ends a screenshot with status
     CHECK_FALSE(QFile::exists(folder.filePath("a.png")));
 }
 
+TEST_CASE("a screenshot asks for none of several transfer functions in a file", "[program]") {
+    const QTemporaryDir folder;
+    QFile file(folder.filePath("several.json"));
+    REQUIRE(file.open(QIODevice::WriteOnly));
+    file.write(R"([{"Name": "a", "RGBPoints": [0, 1, 0, 0, 1, 1, 0, 0], "Points": [0, 0.2, 0.5, 0, 1, 0.6, 0.5, 0]},
+                   {"Name": "b", "RGBPoints": [0, 0, 1, 0, 1, 0, 1, 0], "Points": [0, 0.2, 0.5, 0, 1, 0.6, 0.5, 0]}])");
+    file.close();
+    const Outcome run = start(
+        {"sample:disks", "--tf", file.fileName(), "--screenshot", folder.filePath("a.png")}); // it comes to its end
+    INFO(run.err.toStdString());
+    CHECK(run.status == 0);
+    CHECK(QFile::exists(folder.filePath("a.png")));
+}
+
 TEST_CASE("a session is opened from a shell", "[program]") {
     const QTemporaryDir folder;
     const QString session = folder.filePath("s.pellucid.json"), picture = folder.filePath("a.png");

@@ -156,6 +156,21 @@ TEST_CASE("the window asks which of several transfer functions in a file is mean
     CHECK(says(w, "positions 0 to 1 are put on the values"));
     CHECK_FALSE(says(w, "takes another"));
 
+    // At the start of a window, too; who gives up gets the automatic start.
+    whenOpen(w.window, "presetDialog", choose("green"));
+    w.opening().openAtStart({"sample:disks"}, file);
+    w.settle();
+    CHECK(middle().g == Approx(1));
+    CHECK(middle().b == Approx(0).margin(1e-9));
+    whenOpen(w.window, "presetDialog", [](QDialog& dialog) { dialog.reject(); });
+    w.opening().openAtStart({"sample:disks"}, file);
+    w.settle();
+    CHECK(w.document().volume()->title == "disks");
+    CHECK(w.document().tf().features.size() > 0); // a preset has none
+    whenOpen(w.window, "presetDialog", choose("blue"));
+    w.opening().openPath(file);
+    w.settle();
+
     // The same question comes before that for the parts.
     const double opacity = w.document().tf().opacity(0.25);
     auto* const files = new QTimer(&w.window);

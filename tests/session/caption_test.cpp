@@ -221,6 +221,45 @@ TEST_CASE("a caption says view, shares, what hides what, and what is left out", 
     CHECK(caption(facts) == "From above: empty.");
 }
 
+TEST_CASE("a caption of a feature that is drawn alone speaks of no other", "[caption]") {
+    CaptionFacts facts;
+    facts.title = "tooth";
+    facts.from = "from the right";
+    facts.alone = "dentine";
+    facts.features = {feature("dentine", 0.4, 0.383)};
+    CHECK(caption(facts) ==
+          "From the right: tooth, dentine alone. Where all features are drawn, dentine has 40 % of the "
+          "saliency and 38 % of what is visible.");
+    CHECK(altText(facts) == "From the right: tooth, dentine alone.");
+    // The others hide all of it, but they are not there.
+    facts.features.front().vws = facts.features.front().visibility = 0;
+    CHECK_THAT(caption(facts), !Contains("Nothing is visible"));
+    facts.features.front().state = CaptionFeature::State::Hidden;
+    CHECK(caption(facts) == "From the right: tooth, dentine alone. Not drawn: dentine.");
+    facts.mode = RenderMode::Mip;
+    CHECK(caption(facts) == "From the right, the largest value along each ray: tooth, dentine alone.");
+}
+
+TEST_CASE("what is said of a scene is what it draws", "[caption]") {
+    const TempFolder folder;
+    std::uint32_t number = 0;
+    Scene scene = randomScene(number, folder);
+    while (scene.tf.features.size() < 2) scene = randomScene(++number, folder);
+    const MeasureInput input = measureInput(scene);
+    Workspace workspace;
+    Measures measures = workspace.measure(input);
+    measures.coverage = workspace.coverage(input);
+    CHECK(captionFacts(scene, measures).features.size() == scene.tf.features.size());
+    scene.session.display.edit([&](DisplaySettings& d) { d.onlyFeature = scene.tf.features[1].id; });
+    const CaptionFacts facts = captionFacts(scene, measures, workspace.occlusion(input));
+    CHECK(facts.alone == "beryl"); // the second of the names
+    REQUIRE(facts.features.size() == 1);
+    CHECK(facts.features.front().name == "beryl");
+    CHECK(facts.features.front().vws == measures.features[1].vws);
+    CHECK(facts.hides.empty());
+    CHECK_FALSE(facts.coverage);
+}
+
 TEST_CASE("in captions of random figures each number is the one that it speaks of", "[caption]") {
     std::mt19937 random(28);
     std::uniform_real_distribution<double> share(0, 1);

@@ -143,6 +143,12 @@ TEST_CASE("programs that lay a curve over the data get it for all values of the 
                     if (seen.opacity(own) > 0) CHECK(read.tf.color(x).b == Approx(seen.color(own).b).margin(0.005));
                 }
             }
+    // Values of one frame are called so; in a format with a range of its own nobody needs them.
+    TfToWrite ofFrame{ramp, {}, g, "mine", ValueRange{-500, 500}};
+    ofFrame.sayDataIsOf("frame 3");
+    CHECK(says(writtenTf(itkSnapFormat(), ofFrame).losses,
+               "all values of the data, -500 to 500, the range of frame 3 alone: other frames were not read"));
+    CHECK_FALSE(says(writtenTf(paraViewFormat(), ofFrame).losses, "frame 3"));
     // Without the data the curve is written as it is, and that is told.
     const WrittenTf unknown = writtenTf(itkSnapFormat(), {ramp, {}, {}, ""});
     CHECK(says(unknown.losses, "assumed to be -1000 to 3000; name a volume"));

@@ -1,6 +1,7 @@
 #include "options/tf_options.h"
 
 #include "parse.h"
+#include "session/scene_data.h"
 #include "session/variable_edits.h"
 #include "tf/edit.h"
 #include "tf/formats/tf_file.h"
@@ -92,7 +93,7 @@ void TfOptions::applyTo(SceneInputs& inputs) const {
 
 void TfOptions::takePartsInto(Scene& scene, const MemoryUse& then, const JobControl& job) const {
     if (!parts) return;
-    const TransferFunction other = forVolume(readTfNamed(*spec), *scene.data);
+    const TransferFunction other = forScene(readTfNamed(*spec), scene);
     Session session = scene.session;
     takeTfParts(session, other, *parts, scene.volume->range());
     const Camera camera = scene.camera;

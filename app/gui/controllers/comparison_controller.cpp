@@ -144,7 +144,7 @@ void ComparisonController::pin() {
 void ComparisonController::compareWithTf(const QString& spec, const QString& name) {
     m_services.attempt(tr("Cannot compare with the transfer function"), [&] {
         const ReadTf read = readTfNamed(spec.toStdString());
-        TransferFunction tf = withoutIdentities(forVolume(read, *m_services.scene().data));
+        TransferFunction tf = withoutIdentities(forScene(read, m_services.scene()));
         placeAsPublished(m_services.scene().session, *m_services.scene().data, tf);
         ComparedState b = present(name);
         b.tf = std::move(tf);

@@ -309,7 +309,7 @@ void OpenController::openTf(const QString& specOrPath) {
     if (specOrPath == kAutomaticTf) return automaticStartWanted();
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const ReadTf read = readTfNamed(specOrPath.toStdString());
-        const TransferFunction tf = forVolume(read, *store.scene().data);
+        const TransferFunction tf = forScene(read, store.scene());
         const bool isFile = namesTfFile(specOrPath);
         const auto change = [tf, data = store.scene().data](Session& session) {
             TransferFunction placed = tf;
@@ -468,7 +468,10 @@ void OpenController::openCopied() {
 void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec) {
     if (paths.size() == 1 && isSession(paths.front())) return openSession(paths.front());
     VolumeSource source = sourceOf(paths);
-    if (askRawLayout(source)) openChosen(source, tfSpec);
+    if (!askRawLayout(source)) return;
+    const bool isFile = !tfSpec.isEmpty() && namesTfFile(tfSpec);
+    openChosen(source,
+               isFile ? askPreset(tfSpec, m_services.window()) : tfSpec); // who gives up gets the automatic start
 }
 
 void OpenController::openSeries(const Look& look, const FileContents& contents) {

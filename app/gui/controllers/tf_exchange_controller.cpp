@@ -47,7 +47,9 @@ void TfExchangeController::addActions() {
 TfToWrite TfExchangeController::present(const QString& name) const {
     const Scene& scene = m_services.scene();
     const Volume& volume = *scene.volume;
-    return {scene.tf, volume.range(), volume.geometry(), name.toStdString(), volume.dataRange()};
+    TfToWrite tf{scene.tf, volume.range(), volume.geometry(), name.toStdString(), dataRangeOf(scene)};
+    tf.sayDataIsOf(frameOfDataRange(scene));
+    return tf;
 }
 
 QStringList TfExchangeController::lossesOf(const TfFormat& format) const {
@@ -94,7 +96,7 @@ void TfExchangeController::openParts(const QString& path, const TfParts& parts) 
     if (!m_services.isEditable()) return;
     m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const Scene& scene = m_services.scene();
-        const TransferFunction other = forVolume(openTfFile(path.toStdString()), *scene.data);
+        const TransferFunction other = forScene(openTfFile(path.toStdString()), scene);
         m_opening.editData(tr("Open parts of a transfer function"),
                            [other, parts, window = scene.volume->range()](Session& session) {
                                takeTfParts(session, other, parts, window);

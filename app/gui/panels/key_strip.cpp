@@ -14,7 +14,8 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kMargin = 8, kScale = 18, kFoot = 10; ///< pixels: at the sides, the scale above, the marks below
+constexpr double kMargin = 8, kScale = 24, kFoot = 10; ///< pixels: at the sides, the scale above, the marks below
+constexpr double kHandle = 9;                          ///< pixels, of the playhead, below the labels of the scale
 constexpr double kShape = 4.0 / 3;                     ///< width of a picture over its height
 constexpr double kGap = 4;                             ///< pixels between pictures, at least
 constexpr double kStep = 0.1, kLongStep = 1;           ///< s, of a key of the keyboard
@@ -233,7 +234,7 @@ void KeyStrip::paintEvent(QPaintEvent*) {
     painter.drawLine(QPointF(x, kScale - 4), QPointF(x, all.bottom()));
     painter.setPen(QPen(theme::kKnob, 1));
     painter.setBrush(theme::kAccent);
-    painter.drawPolygon(QPolygonF{{x - 5, kScale - 9}, {x + 5, kScale - 9}, {x, kScale}});
+    painter.drawPolygon(QPolygonF{{x - 5, kScale - kHandle}, {x + 5, kScale - kHandle}, {x, kScale}});
     if (hasFocus()) {
         painter.setBrush(Qt::NoBrush);
         painter.setPen(QPen(theme::kAccent, 1));

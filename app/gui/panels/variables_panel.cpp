@@ -1,4 +1,5 @@
 // The variables of a session: what they are, what they drive, and the ground under them.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -30,6 +31,8 @@
 
 namespace pellucid::gui {
 namespace {
+
+constexpr int kWidestName = 110; ///< pixels, of a column that people can drag
 
 enum Column { kName, kDrives, kOrigin, kGrid, kRange, kColumns };
 
@@ -188,7 +191,11 @@ void VariablesPanel::makeList() {
     m_list->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::DoubleClicked);
     m_list->setMinimumSize(120, 90);
     m_list->setMaximumHeight(150);
-    m_list->header()->setStretchLastSection(true);
+    // Grid and range are always in sight: what a variable drives and where it is from give way, and tips have it whole.
+    m_list->header()->setStretchLastSection(false);
+    m_list->header()->setMinimumSectionSize(36);
+    for (const int c : {kDrives, kOrigin}) m_list->header()->setSectionResizeMode(c, QHeaderView::Stretch);
+    for (const int c : {kGrid, kRange}) m_list->header()->setSectionResizeMode(c, QHeaderView::ResizeToContents);
     connect(m_list, &QTreeWidget::currentItemChanged, this, &VariablesPanel::showRange);
     connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item, int at) {
         if (at == kName) rename(item);
@@ -218,7 +225,8 @@ void VariablesPanel::follow() {
             if (v.name == chosen) m_list->setCurrentItem(item);
         }
         if (m_list->currentItem() == nullptr) m_list->setCurrentItem(m_list->topLevelItem(0));
-        for (int c = 0; c < kColumns - 1; ++c) m_list->resizeColumnToContents(c);
+        m_list->resizeColumnToContents(kName);
+        m_list->setColumnWidth(kName, std::min(m_list->columnWidth(kName), kWidestName));
     }
     QStringList resampled;
     for (const Variable& v : *session.variables)

@@ -46,6 +46,10 @@ public:
     double value(double x) const { return m_range.lo + x * (m_range.hi - m_range.lo); }
     const std::optional<ValueRange>& dataRange() const { return m_data; } ///< two values at least
 
+    /// The smallest and largest value are those of this alone, "frame 3"; empty: of all data.
+    void sayDataIsOf(const std::string& part) { m_dataOf = part; }
+    const std::string& dataOf() const { return m_dataOf; }
+
     /// The same over the range of the data, for programs that lay 0 to 1 over it; as it is where either range is not
     /// known. Without features.
     TfToWrite overData() const;
@@ -63,6 +67,7 @@ private:
     Geometry m_geometry;
     bool m_hasRange = false, m_hasVolume = false;
     std::optional<ValueRange> m_data;
+    std::string m_dataOf;
 };
 
 struct WrittenTf {

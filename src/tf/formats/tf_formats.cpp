@@ -187,6 +187,8 @@ void addNoDomainLoss(std::vector<std::string>& losses, const TfToWrite& tf, cons
         loss += "which are assumed to be " + rangeText(tf.range());
     else
         loss += "which are assumed to be those at 0 and 1";
+    if (tf.dataRange() && !tf.dataOf().empty())
+        loss += ", the range of " + tf.dataOf() + " alone: other frames were not read";
     losses.push_back(loss + (tf.dataRange() || tf.hasVolume() ? "" : "; name a volume"));
 }
 
