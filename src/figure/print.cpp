@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 
 #include <dlfcn.h>
 
 #include "base/error.h"
+#include "base/memory.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Address space of Pango, its threads and the fonts: where it runs out within them, GLib ends the program.
+constexpr std::uint64_t kPrintBytes = 96u << 20;
 
 /// Beside the program, as built, or where it is installed.
 std::string pathOfLibrary() {
@@ -26,6 +31,7 @@ std::string pathOfLibrary() {
 const PrintLibrary& library() {
     static const PrintLibrary& loaded = []() -> const PrintLibrary& {
         const std::string path = pathOfLibrary();
+        requireMemory("setting the letters of a figure", path, kPrintBytes);
         void* const handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         void* const symbol = handle == nullptr ? nullptr : ::dlsym(handle, kPrintLibrarySymbol);
         if (symbol == nullptr) {

@@ -78,3 +78,13 @@ TEST_CASE("figures that cannot be made are refused in words", "[cli][figure]") {
     refused({"--out", "a.pdf", "--dpi", "2400", "--width-mm", "500"}, "fewer dots per inch");
     CHECK(w.list().empty());
 }
+
+TEST_CASE("figure says that too little memory is left for fonts", "[cli][figure]") {
+    const Workshop w;
+    const Outcome refused =
+        w.run(kSmall + Words{"--memory", "0.09", "--out", "a.pdf"}); // 97 MB, of which 101 are needed
+    CHECK(refused.status == 1);
+    CHECK(refused.err.find("setting the letters of a figure needs 101 MB of memory") != std::string::npos);
+    CHECK_FALSE(w.has("a.pdf"));
+    CHECK(w.run(kSmall + Words{"--memory", "1", "--out", "a.pdf"}).status == 0);
+}

@@ -10,6 +10,7 @@
 #include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QFile>
+#include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
@@ -436,6 +437,11 @@ TEST_CASE("a second variable darkens, swapping it and back gives the same pictur
     openCloud(w, weather);
     addRain(w, weather);
     REQUIRE(waitFor([&] { return rowOf(w, "rain").text(3).contains("10×10×10"); }));
+    // The grid is in sight, before the column From; the tip has the frames.
+    const QHeaderView& header = *w.child<QTreeWidget>("variablesList").header();
+    CHECK(header.visualIndex(3) < header.visualIndex(2));
+    CHECK(rowOf(w, "rain").text(3) == "10×10×10");
+    CHECK(rowOf(w, "rain").toolTip(3).contains("frames"));
     // It lies on another grid, and the panel says so.
     CHECK(w.child<QLabel>("variablesNotice").text().contains("rain"));
     turnOn(w);

@@ -32,7 +32,7 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kWidestName = 110; ///< pixels, of a column that people can drag
+constexpr int kWidest = 90; ///< pixels, of names and of what they drive, until people drag the columns
 
 enum Column { kName, kDrives, kOrigin, kGrid, kRange, kColumns };
 
@@ -191,11 +191,8 @@ void VariablesPanel::makeList() {
     m_list->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::DoubleClicked);
     m_list->setMinimumSize(120, 90);
     m_list->setMaximumHeight(150);
-    // Grid and range are always in sight: what a variable drives and where it is from give way, and tips have it whole.
-    m_list->header()->setStretchLastSection(false);
-    m_list->header()->setMinimumSectionSize(36);
-    for (const int c : {kDrives, kOrigin}) m_list->header()->setSectionResizeMode(c, QHeaderView::Stretch);
-    for (const int c : {kGrid, kRange}) m_list->header()->setSectionResizeMode(c, QHeaderView::ResizeToContents);
+    m_list->header()->setStretchLastSection(true);
+    m_list->header()->moveSection(kGrid, kOrigin); // in sight: from where comes after it, and the range is below, too
     connect(m_list, &QTreeWidget::currentItemChanged, this, &VariablesPanel::showRange);
     connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item, int at) {
         if (at == kName) rename(item);
@@ -225,8 +222,8 @@ void VariablesPanel::follow() {
             if (v.name == chosen) m_list->setCurrentItem(item);
         }
         if (m_list->currentItem() == nullptr) m_list->setCurrentItem(m_list->topLevelItem(0));
-        m_list->resizeColumnToContents(kName);
-        m_list->setColumnWidth(kName, std::min(m_list->columnWidth(kName), kWidestName));
+        for (int c = 0; c < kColumns - 1; ++c) m_list->resizeColumnToContents(c);
+        for (const int c : {kName, kDrives}) m_list->setColumnWidth(c, std::min(m_list->columnWidth(c), kWidest));
     }
     QStringList resampled;
     for (const Variable& v : *session.variables)
@@ -262,13 +259,15 @@ QTreeWidgetItem* VariablesPanel::addToList(const Variable& v) {
     const VariableInfo* const info = infoOf(v.name);
     if (info == nullptr) return item;
     const QString grid = QStringLiteral("%1×%2×%3").arg(info->dims.x).arg(info->dims.y).arg(info->dims.z);
-    item->setText(kGrid, info->frames > 1 ? tr("%1, %L2 frames").arg(grid).arg(info->frames) : grid);
+    item->setText(kGrid, grid);
     item->setText(kRange, rangeText(info->range));
     item->setToolTip(kRange, v.window           ? tr("Own range, in the unit of the variable")
                              : info->wholeRange ? tr("All values, in the unit of the variable")
                                                 : tr("Values of this frame; other frames were not read"));
-    if (!info->sameGrid)
-        item->setToolTip(kGrid, tr("Resampled onto the grid of %1").arg(textOf(session.variable().name)));
+    QStringList more;
+    if (info->frames > 1) more << tr("%L1 frames").arg(info->frames);
+    if (!info->sameGrid) more << tr("Resampled onto the grid of %1").arg(textOf(session.variable().name));
+    item->setToolTip(kGrid, more.join('\n'));
     return item;
 }
 
