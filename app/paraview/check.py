@@ -134,7 +134,7 @@ def main():
     options = parser.parse_args()
     script, out = os.path.abspath(__file__), os.path.abspath(options.out)
     cases = [("shells", ["shells", "--size", "96"]), ("knee", ["knee", "--size", "240"])]
-    display = [] if os.environ.get("DISPLAY") else ["xvfb-run", "-a", "-s", "-screen 0 1024x1024x24"]
+    display = [] if os.environ.get("DISPLAY") else ["xvfb-run", "-a", "-s", "-noreset -screen 0 1024x1024x24"]
     failed = False
     for name, sample in cases:
         volume = os.path.join(out, name + ".nrrd")
