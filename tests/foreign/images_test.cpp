@@ -536,6 +536,14 @@ TEST_CASE("pictures of a folder are as far apart as they say", "[images]") {
     CHECK(hasNotice(apart, "s1.tif says another distance"));
     // Resolution alone is that of a print.
     CHECK(load({{"", 72}, {"", 72}}).geometry().spacing == Vec3(1));
+    // Values of 0.5 v + 10, where all files say so.
+    const std::string calibrated = imageJ + "spacing=2\ncf=0\nc0=10\nc1=0.5\n";
+    const Volume plain = load({{imageJ + "spacing=2\n", 4}, {imageJ + "spacing=2\n", 4}});
+    const Volume scaled = load({{calibrated, 4}, {calibrated, 4}});
+    for (std::size_t i = 0; i < voxelCount(plain.dims()); ++i) CHECK(scaled.value(i) == 0.5 * plain.value(i) + 10);
+    const Volume mixed = load({{calibrated, 4}, {imageJ + "spacing=2\n", 4}});
+    CHECK(mixed.value(1) == plain.value(1));
+    CHECK(hasNotice(mixed, "s1.tif has another calibration of values than s0.tif: the stored values are shown"));
     const auto omeText = [](const std::string& z) {
         return ome(
             omeImage("SizeZ=\"1\" PhysicalSizeX=\"500\" PhysicalSizeXUnit=\"nm\" PhysicalSizeY=\"0.25\"" + z, ""));

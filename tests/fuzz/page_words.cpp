@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(!image.name.empty(), "images have names");
         require(image.firstPage >= 0, "pages are counted");
     }
-    const SliceSpacing slices = sliceSpacingIn(page);
+    const SliceMetadata slices = sliceMetadataIn(page);
     for (int a = 0; a < 3; ++a)
         require(slices.spacing[a] > 0 && std::isfinite(slices.spacing[a]), "slices are a length apart");
     constexpr int kMost = 1'000'000;

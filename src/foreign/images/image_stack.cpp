@@ -86,11 +86,15 @@ std::size_t chosenOf(const std::vector<ImageInFile>& all, const std::string& wan
 }
 
 /// Whether pixels are as far apart, but for rounding.
-bool isSameSpacing(const SliceSpacing& a, const SliceSpacing& b) {
+bool isSameSpacing(const SliceMetadata& a, const SliceMetadata& b) {
     constexpr double kRounding = 1e-5;
     for (int axis = 0; axis < 3; ++axis)
         if (std::abs(a.spacing[axis] - b.spacing[axis]) > kRounding * a.spacing[axis]) return false;
     return a.isApartKnown == b.isApartKnown;
+}
+
+bool isSameScaling(const std::optional<ValueScaling>& a, const std::optional<ValueScaling>& b) {
+    return a.has_value() == b.has_value() && (!a || (a->slope == b->slope && a->intercept == b->intercept));
 }
 
 } // namespace
@@ -108,7 +112,7 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
         before(bytesOfFile(m_files[f]));
         const auto file = m_open(m_files[f]);
         for (int page = 0; page < kMostPages && file->goTo(page); ++page) {
-            if (page == 0 && isFolder) compareSpacing(*file, f);
+            if (page == 0 && isFolder) compareMetadata(*file, f);
             if (page == 0 && !isFolder) {
                 findOrder(*file, wanted);
                 named.insert(m_order.pages.begin(), m_order.pages.end());
@@ -142,7 +146,7 @@ ImageStack::ImageStack(const std::string& path, const std::string& wanted, const
                                          : " do not belong to this image, according to its OME-XML, and are left out"));
     if (passedOver > 0) m_notices.push_back(pagesText(passedOver) + " of another size or type passed over");
     if (isFolder) noteMissing();
-    if (isFolder) noteSpacing();
+    if (isFolder) noteMetadata();
     putInOrder();
 }
 
@@ -172,31 +176,39 @@ void ImageStack::findOrder(PictureFile& file, const std::string& wanted) {
         m_order.notices.insert(m_order.notices.begin(), "image " + number + ", " + inQuotes(m_image) + ", is shown");
 }
 
-/// Holds what a file of a folder, the one of this number, says of the distance between pixels against the first one.
-void ImageStack::compareSpacing(PictureFile& file, std::size_t number) {
+/// Holds what a file of a folder, the one of this number, says of its pixels against the first one.
+void ImageStack::compareMetadata(PictureFile& file, std::size_t number) {
     constexpr std::uint64_t kMostText = 8u << 20; // OME-XML may describe all files in each
-    if (!m_otherSpacing.empty()) return;
+    if (!m_otherSpacing.empty() && !m_otherScaling.empty()) return;
     const FirstPage page = firstPageOf(file, m_files[number]);
     m_textBytes += page.description.size();
-    if (m_sliceSpacing && m_textBytes > kMostText) return;
-    SliceSpacing spacing = sliceSpacingIn(page);
-    if (!m_sliceSpacing)
-        m_sliceSpacing = std::move(spacing);
-    else if (!isSameSpacing(*m_sliceSpacing, spacing))
-        m_otherSpacing = m_files[number];
+    if (m_sliceMetadata && m_textBytes > kMostText) return;
+    SliceMetadata metadata = sliceMetadataIn(page);
+    if (!m_sliceMetadata) {
+        m_sliceMetadata = std::move(metadata);
+        return;
+    }
+    if (m_otherSpacing.empty() && !isSameSpacing(*m_sliceMetadata, metadata)) m_otherSpacing = m_files[number];
+    if (m_otherScaling.empty() && !isSameScaling(m_sliceMetadata->scaling, metadata.scaling))
+        m_otherScaling = m_files[number];
 }
 
-/// Takes the spacing that the files of a folder state, and says what they leave open.
-void ImageStack::noteSpacing() {
-    const SliceSpacing& first = *m_sliceSpacing;
+/// Takes the spacing and the calibration of values that the files of a folder state, and says what they leave open.
+void ImageStack::noteMetadata() {
+    const auto nameOf = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+    const SliceMetadata& first = *m_sliceMetadata;
     m_order.spacing = first.spacing;
     m_notices.insert(m_notices.end(), first.notices.begin(), first.notices.end());
     if (!m_otherSpacing.empty())
-        m_notices.push_back(
-            std::filesystem::path(m_otherSpacing).filename().string() + " says another distance between pixels than " +
-            std::filesystem::path(m_files.front()).filename().string() + ", which is taken for all pictures");
+        m_notices.push_back(nameOf(m_otherSpacing) + " says another distance between pixels than " +
+                            nameOf(m_files.front()) + ", which is taken for all pictures");
     if (!first.isApartKnown && first.spacing != Vec3(1))
         m_notices.emplace_back("the files do not say how far slices are apart: 1 is taken");
+    if (m_otherScaling.empty())
+        m_order.scaling = first.scaling;
+    else
+        m_notices.push_back(nameOf(m_otherScaling) + " has another calibration of values than " +
+                            nameOf(m_files.front()) + ": the stored values are shown");
 }
 
 /// Says which numbers are missing between those of the pictures in a folder.

@@ -40,8 +40,8 @@ private:
     void addPlainPages();
     void noteMissing();
     void findOrder(PictureFile& file, const std::string& wanted);
-    void compareSpacing(PictureFile& file, std::size_t number);
-    void noteSpacing();
+    void compareMetadata(PictureFile& file, std::size_t number);
+    void noteMetadata();
     void pickPictures();
     void putInOrder();
     void findPlain(int step, ReaderLayout& answer) const;
@@ -54,9 +54,9 @@ private:
     PageShape m_shape;                                     ///< of all pages
     std::string m_image;                                   ///< which image of the file this is; empty: it has one
     std::vector<std::string> m_imageNames, m_imageDetails; ///< of all images, where there are several
-    std::optional<SliceSpacing> m_sliceSpacing;            ///< of a folder: what its first file says
-    std::uint64_t m_textBytes = 0;                         ///< of texts that were searched for the spacing
-    std::string m_otherSpacing;                            ///< the first file that says something else
+    std::optional<SliceMetadata> m_sliceMetadata;          ///< of a folder: what its first file says
+    std::uint64_t m_textBytes = 0;                         ///< of texts that were searched for it
+    std::string m_otherSpacing, m_otherScaling;            ///< the first file that says something else
     std::vector<std::string> m_notices;
     mutable std::unique_ptr<PictureFile> m_file; ///< the one that was read last: boxes follow each other
     mutable std::size_t m_opened = 0;            ///< which it is

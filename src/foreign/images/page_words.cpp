@@ -463,11 +463,14 @@ std::vector<ImageInFile> imagesNamedIn(const FirstPage& page) {
     return all;
 }
 
-SliceSpacing sliceSpacingIn(const FirstPage& page) {
+SliceMetadata sliceMetadataIn(const FirstPage& page) {
+    PageOrder order;
+    order.slices = 1; // nothing is said of slices whose distance is not known
     Distances distances;
     if (isOfImageJ(page)) {
         Fields fields = fieldsIn(page.description);
         distances = distancesOfImageJ(fields, page);
+        setCalibration(order, fields, page.shape);
     } else if (isOfOme(page)) {
         const OmeText text = omeTextIn(page);
         const auto image =
@@ -475,11 +478,9 @@ SliceSpacing sliceSpacingIn(const FirstPage& page) {
         if (image != text.images.end()) distances = distancesOfOme(*image->pixels);
     }
     const bool isApartKnown = distances.numbers.z > 0;
-    PageOrder order;
-    order.slices = 1; // nothing is said of slices whose distance is not known
     setSpacing(order, distances);
     if (!isApartKnown) order.spacing.z = 1;
-    return {order.spacing, isApartKnown, std::move(order.notices)};
+    return {order.spacing, isApartKnown, order.scaling, std::move(order.notices)};
 }
 
 } // namespace pellucid

@@ -57,12 +57,13 @@ struct PageOrder {
 PageOrder pageOrderIn(const FirstPage& page);
 
 /// What a file says that is one slice of several.
-struct SliceSpacing {
+struct SliceMetadata {
     Vec3 spacing{1, 1, 1};     ///< 1 where it does not say
     bool isApartKnown = false; ///< whether it says how far slices are apart
+    std::optional<ValueScaling> scaling;
     std::vector<std::string> notices;
 };
 
-SliceSpacing sliceSpacingIn(const FirstPage& page);
+SliceMetadata sliceMetadataIn(const FirstPage& page);
 
 } // namespace pellucid
