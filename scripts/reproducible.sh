@@ -10,10 +10,11 @@ if [ "${1:-}" = --cli ]; then
     shift
 fi
 work=${1:-$(mktemp -d)}
-export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}
+commit=$(git rev-parse HEAD) # of both, whatever is committed meanwhile
+export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct "$commit")}
 for name in first second-with-a-longer-name; do
     mkdir -p "$work/$name"
-    git archive HEAD | tar -x -C "$work/$name"
+    git archive "$commit" | tar -x -C "$work/$name"
     (cd "$work/$name" && umask $([ $name = first ] && echo 022 || echo 077) &&
         PELLUCID_PACKAGE_BUILD="$work/$name/out" scripts/package.sh "${only[@]}")
 done
