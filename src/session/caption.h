@@ -27,8 +27,7 @@ struct CaptionFacts {
     bool lit = false;  ///< shaded
     bool cut = false;  ///< some of it is cut away
     RenderMode mode = RenderMode::Composite;
-    std::string
-        alone; ///< the feature whose voxels alone are drawn; its figures are those among all. Empty: all are drawn
+    std::string alone; ///< the only feature that is drawn; its figures are those among all. Empty: all are drawn
     std::vector<CaptionFeature> features; ///< those that are shown, in the order of the transfer function
     std::vector<std::string> hides;       ///< "skin hides 83 % of bone"
     std::optional<double> coverage; ///< how opaque the picture is where there is something, [0,1]; empty: not known

@@ -470,8 +470,8 @@ void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec
     VolumeSource source = sourceOf(paths);
     if (!askRawLayout(source)) return;
     const bool isFile = !tfSpec.isEmpty() && namesTfFile(tfSpec);
-    openChosen(source,
-               isFile ? askPreset(tfSpec, m_services.window()) : tfSpec); // who gives up gets the automatic start
+    // Who gives up gets the automatic start.
+    openChosen(source, isFile ? askPreset(tfSpec, m_services.window()) : tfSpec);
 }
 
 void OpenController::openSeries(const Look& look, const FileContents& contents) {

@@ -93,10 +93,6 @@ bool isSameSpacing(const SliceMetadata& a, const SliceMetadata& b) {
     return a.isApartKnown == b.isApartKnown;
 }
 
-bool isSameScaling(const std::optional<ValueScaling>& a, const std::optional<ValueScaling>& b) {
-    return a.has_value() == b.has_value() && (!a || (a->slope == b->slope && a->intercept == b->intercept));
-}
-
 } // namespace
 
 ImageStack::ImageStack(const std::string& path, const std::string& wanted, const BeforeFile& before, OpenPictures open)
@@ -189,8 +185,7 @@ void ImageStack::compareMetadata(PictureFile& file, std::size_t number) {
         return;
     }
     if (m_otherSpacing.empty() && !isSameSpacing(*m_sliceMetadata, metadata)) m_otherSpacing = m_files[number];
-    if (m_otherScaling.empty() && !isSameScaling(m_sliceMetadata->scaling, metadata.scaling))
-        m_otherScaling = m_files[number];
+    if (m_otherScaling.empty() && m_sliceMetadata->scaling != metadata.scaling) m_otherScaling = m_files[number];
 }
 
 /// Takes the spacing and the calibration of values that the files of a folder state, and says what they leave open.

@@ -42,6 +42,7 @@ struct FileAxis {
 /// value = slope · stored + intercept, both finite.
 struct ValueScaling {
     double slope = 1, intercept = 0;
+    bool operator==(const ValueScaling&) const = default;
 };
 
 class InflateIndex;
