@@ -4,6 +4,7 @@
 #include "parse.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/scene_data.h"
 #include "tf/alike_features.h"
 #include "tf/formats/tf_file.h"
 #include "tf/formats/tf_json.h"
@@ -72,7 +73,7 @@ Answer run(const Options& o, Progress& progress) {
     Json json = jsonOf(scene.tf, among, alike, o.difference);
     if (o.outTf) {
         const TransferFunction tf = mended(scene, among, o.difference);
-        addTo(notices, writeTfFile(tf, *scene.volume, *o.outTf));
+        addTo(notices, writeTfFile(toWrite(tf, scene, *o.outTf), *o.outTf));
         text += "wrote " + *o.outTf + "\n";
         json["tf"] = jsonFromTf(tf);
     }

@@ -9,6 +9,7 @@
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/scene_data.h"
 #include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
 #include "tf_notices.h"
@@ -93,8 +94,10 @@ Answer run(const Options& o, Progress& progress) {
         if (*o.coverage < low || *o.coverage > high)
             notices.push_back("pictures with these shares are from " + percentText(low) + " to " + percentText(high) +
                               " opaque; the nearest one was taken");
-        if (o.outTf)
-            addTo(notices, writeTfFile(withShownOpacities(scene.tf, chosen->opacity), *input.volume, *o.outTf));
+        if (o.outTf) {
+            const TransferFunction tf = withShownOpacities(scene.tf, chosen->opacity);
+            addTo(notices, writeTfFile(toWrite(tf, scene, *o.outTf), *o.outTf));
+        }
     }
     seconds.total = total.seconds();
 

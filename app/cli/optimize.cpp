@@ -13,6 +13,7 @@
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/scene_data.h"
 #include "session/view_workspace.h"
 #include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
@@ -120,7 +121,7 @@ Answer run(const Options& o, Progress& progress) {
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
-    if (o.outTf) addTo(notices, writeTfFile(result.tf, *input.volume, *o.outTf));
+    if (o.outTf) addTo(notices, writeTfFile(toWrite(result.tf, scene, *o.outTf), *o.outTf));
     if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
     std::string text =
         textOf(result, namesWithEmpty(scene.tf, *scene.histogram), engine + profileText(input.settings), seconds);

@@ -10,6 +10,7 @@
 #include "render/holder.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/scene_data.h"
 #include "tf/formats/tf_file.h"
 #include "tf/formats/tf_json.h"
 #include "tf_notices.h"
@@ -105,8 +106,7 @@ Answer run(const Options& o, Progress& progress) {
     if (holder) proposal.why.push_back(textOf(*holder));
     const double seconds = looking.seconds();
     std::vector<std::string> notices = opened.notices();
-    if (o.outTf)
-        addTo(notices, writeTfFile(proposal.tf, proposal.window, *o.outTf, volume.geometry(), volume.dataRange()));
+    if (o.outTf) addTo(notices, writeTfFile(toWrite(proposal.tf, opened.scene, *o.outTf, proposal.window), *o.outTf));
     Json json = jsonOf(proposal, sight.shares, seconds);
     json.update(jsonFromView(home.camera, volume.geometry()));
     if (holder)

@@ -16,6 +16,7 @@
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/scene_data.h"
 #include "tf/formats/tf_file.h"
 #include "tf_notices.h"
 
@@ -144,7 +145,7 @@ Answer run(const Options& o, Progress& progress) {
     const RayBundle rays(*scene.volume, tf, seen.view, kCoverageRays, progress.phase("coverage"));
     remarks.dark = darkeningOf(rays, histogram, tf, result.tf, options, again);
     std::vector<std::string> notices = opened.notices();
-    if (o.outTf) addTo(notices, writeTfFile(result.tf, *scene.volume, *o.outTf));
+    if (o.outTf) addTo(notices, writeTfFile(toWrite(result.tf, scene, *o.outTf), *o.outTf));
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
     addRemarks(json, remarks.outcome, remarks.dark);
     if (options.profile != Profile::Default) json["profile"] = name(options.profile);

@@ -1,6 +1,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cstdio>
@@ -79,9 +80,10 @@ std::string printableJson(std::string_view json) {
             } else if (c.code < 0x20) { // between values; in texts they are escaped already
                 result += static_cast<char>(c.code);
             } else {
-                char escaped[8];
-                std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(c.code));
-                result += escaped;
+                std::array<char, 8> escaped{};
+                // All controls and marks of direction have 16 bits.
+                std::snprintf(escaped.data(), escaped.size(), "\\u%04x", static_cast<unsigned>(c.code & 0xffff));
+                result += escaped.data();
             }
         });
     return result;

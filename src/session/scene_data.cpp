@@ -28,6 +28,14 @@ std::string frameOfDataRange(const Scene& scene) {
     return "frame " + std::to_string(scene.series->nearest(scene.session.frame));
 }
 
+TfToWrite toWrite(const TransferFunction& tf, const Scene& scene, const std::string& path,
+                  const std::optional<ValueRange>& window) {
+    TfToWrite writing{tf, window.value_or(scene.volume->range()), scene.volume->geometry(), presetNameOf(path),
+                      dataRangeOf(scene)};
+    writing.sayDataIsOf(frameOfDataRange(scene));
+    return writing;
+}
+
 TransferFunction forScene(const ReadTf& read, const Scene& scene) {
     TransferFunction tf = forVolume(read, *scene.data);
     if (const ValueRange range = dataRangeOf(scene); read.spansData && range.lo < range.hi) tf.range = range;

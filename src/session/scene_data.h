@@ -30,6 +30,10 @@ std::vector<std::string> openingNoticesIn(const Scene& scene, const ReadTf& read
 ValueRange dataRangeOf(const Scene& scene);
 /// Which frame dataRangeOf() is of, "frame 3"; empty: of all.
 std::string frameOfDataRange(const Scene& scene);
+/// `tf` for programs that draw the present data: its intensities refer to `window` (empty: the one that the scene is
+/// seen through). `path`: the file that it is written to, which names the preset.
+TfToWrite toWrite(const TransferFunction& tf, const Scene& scene, const std::string& path,
+                  const std::optional<ValueRange>& window = {});
 /// A transfer function that has been read for the present data; what spans them (ReadTf::spansData) gets dataRangeOf().
 TransferFunction forScene(const ReadTf& read, const Scene& scene);
 

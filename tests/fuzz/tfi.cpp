@@ -12,9 +12,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         succeeds([&] {
             const TransferFunction tf = readTfFile(path);
             const std::string again = s_folder.path("again.tf.json");
-            writeTfFile(tf, ValueRange{0, 1}, again);
+            writeTf(tf, again);
             require(readTfFile(again) == tf, "a transfer function is read back as it was");
-            writeTfFile(tf, tf.range.value_or(ValueRange{0, 1}), s_folder.path("again.paraview.json"));
+            writeTfFile({tf, ValueRange{0, 1}, {}, "again"}, s_folder.path("again.paraview.json"));
         });
     });
     return 0;

@@ -19,6 +19,7 @@
 #include "dialogs/tf_parts_dialog.h"
 #include "support/temp_folder.h"
 #include "tf/formats/tf_file.h"
+#include "tf/formats/tf_json.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -95,7 +96,7 @@ TEST_CASE("what another program lays over the data keeps its values in the windo
     TransferFunction ramp;
     ramp.points = {{0, 0.2, {0, 0, 1}, false, {}}, {1, 0.6, {0, 0, 1}, false, {}}};
     ramp.range = ValueRange{50, 150};
-    writeTfFile(ramp, {}, folder.path("ramp.tf.json"));
+    writeTf(ramp, folder.path("ramp.tf.json"));
     w.opening().openTf(QString::fromStdString(folder.path("ramp.tf.json")));
     w.settle();
     REQUIRE(w.document().volume()->range() == ValueRange{50, 150});
@@ -202,7 +203,7 @@ TEST_CASE("colours, opacities and range of a file are taken one by one in the wi
     const ValueRange window = w.document().volume()->range();
     blue.range = ValueRange{window.lo, window.lo + 2 * (window.hi - window.lo)};
     const std::string file = folder.path("blue.tf.json");
-    writeTfFile(blue, {}, file);
+    writeTf(blue, file);
     const TransferFunction before = w.document().tf();
     TfExchangeController exchange(w.services(), w.opening());
 

@@ -88,8 +88,8 @@ TEST_CASE("what an eye hides is transparent in the preset", "[paraview]") {
 TEST_CASE("the suffix says for whom a transfer function is written", "[paraview]") {
     const test::TempFolder folder;
     const std::string preset = folder.path("skull.paraview.json"), own = folder.path("skull.tf.json");
-    writeTfFile(tents(2), ValueRange{0, 10}, preset);
-    writeTfFile(tents(2), ValueRange{0, 10}, own);
+    writeTfFile({tents(2), ValueRange{0, 10}, {}, "skull"}, preset);
+    writeTfFile({tents(2), ValueRange{0, 10}, {}, "skull"}, own);
     json read;
     std::ifstream(preset) >> read;
     CHECK(read[0]["Name"] == "skull");

@@ -195,7 +195,7 @@ TEST_CASE("opacities are written for the length that a program takes them for", 
     const test::TempFolder folder;
     for (const char* file : {"a.paraview.json", "a.vp.json", "a.vp", "a.tfi", "a.itf", "a.mitk.xml", "a.tf.csv"}) {
         INFO(file);
-        writeTfFile(tf, {}, folder.path(file), g);
+        writeTfFile({tf, {}, g, "a"}, folder.path(file));
         CHECK(forVolume(openTfFile(folder.path(file)), g).opacity(0.5) == Approx(0.5).margin(0.003));
     }
 }

@@ -27,6 +27,7 @@
 #include "report/tf_plot.h"
 #include "services/services.h"
 #include "session/caption.h"
+#include "session/scene_data.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
@@ -161,9 +162,10 @@ bool SaveController::saveSession(const QString& path) {
 bool SaveController::saveTf(const QString& path) {
     return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the transfer function"), [&] {
         const Scene& scene = m_services.store().committed();
-        const bool whole = !isWrittenForOthers(path.toStdString()); // else what another program knows of it
+        const std::string file = path.toStdString();
+        const bool whole = !isWrittenForOthers(file); // else what another program knows of it
         const std::vector<std::string> lost =
-            writeTfFile(whole ? *scene.session.tf() : scene.tf, *scene.volume, path.toStdString());
+            writeTfFile(toWrite(whole ? *scene.session.tf() : scene.tf, scene, file), file);
         for (const std::string& loss : lost) m_services.notices().add({QString::fromStdString(loss)});
         if (whole) {
             setTfPath(path);

@@ -44,12 +44,8 @@ void TfExchangeController::addActions() {
              {.enabled = [this] { return m_services.isEditable(); }});
 }
 
-TfToWrite TfExchangeController::present(const QString& name) const {
-    const Scene& scene = m_services.scene();
-    const Volume& volume = *scene.volume;
-    TfToWrite tf{scene.tf, volume.range(), volume.geometry(), name.toStdString(), dataRangeOf(scene)};
-    tf.sayDataIsOf(frameOfDataRange(scene));
-    return tf;
+TfToWrite TfExchangeController::present(const std::string& path) const {
+    return toWrite(m_services.scene().tf, m_services.scene(), path);
 }
 
 QStringList TfExchangeController::lossesOf(const TfFormat& format) const {
@@ -61,7 +57,7 @@ QStringList TfExchangeController::lossesOf(const TfFormat& format) const {
 bool TfExchangeController::exportTf(const TfFormat& format, const QString& path) {
     return m_services.store().hasVolume() && m_services.attempt(tr("Cannot export the transfer function"), [&] {
         const std::string file = path.toStdString();
-        const WrittenTf written = writtenTf(format, present(QString::fromStdString(presetNameOf(file))));
+        const WrittenTf written = writtenTf(format, present(file));
         writeTextAtomically(file, written.text);
         m_services.saySaved(path);
     });

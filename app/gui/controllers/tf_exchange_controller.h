@@ -29,7 +29,7 @@ public:
     void openParts(const QString& path, const TfParts& parts);
 
 private:
-    TfToWrite present(const QString& name) const;
+    TfToWrite present(const std::string& path) const;
     void chooseExport();
     void chooseParts();
     void chooseParts(const QString& path);

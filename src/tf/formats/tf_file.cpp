@@ -161,20 +161,14 @@ bool isWrittenForOthers(const std::string& path) {
     return format != nullptr && !isOurs(*format);
 }
 
-std::vector<std::string> writeTfFile(const TransferFunction& tf, const std::optional<ValueRange>& window,
-                                     const std::string& path, const std::optional<Geometry>& volume,
-                                     const std::optional<ValueRange>& data) {
+std::vector<std::string> writeTfFile(const TfToWrite& tf, const std::string& path) {
     if (!isWrittenForOthers(path)) {
-        writeTf(tf, path);
+        writeTf(tf.tf(), path);
         return {};
     }
-    WrittenTf written = writtenTf(*formatOfSuffix(path), {tf, window, volume, presetNameOf(path), data});
+    WrittenTf written = writtenTf(*formatOfSuffix(path), tf);
     writeTextAtomically(path, written.text);
     return std::move(written.losses);
-}
-
-std::vector<std::string> writeTfFile(const TransferFunction& tf, const Volume& volume, const std::string& path) {
-    return writeTfFile(tf, volume.range(), path, volume.geometry(), volume.dataRange());
 }
 
 } // namespace pellucid

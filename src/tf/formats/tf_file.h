@@ -44,15 +44,9 @@ TransferFunction forVolume(const ReadTf& read, const Volume& data);
 std::vector<std::string> openingNotices(const ReadTf& read, const Geometry& geometry,
                                         const std::optional<ValueRange>& values = {});
 
-/// By suffix: for another program (tf_format.h), in the data units of `window`, which the intensities of `tf` refer to,
-/// and for a volume that lies like `volume` and has the values `data`, where they are known; anything else as
-/// *.tf.json. Through a temporary file beside `path` that is renamed. Returns what the format cannot say, each a
-/// sentence without a full stop.
-std::vector<std::string> writeTfFile(const TransferFunction& tf, const std::optional<ValueRange>& window,
-                                     const std::string& path, const std::optional<Geometry>& volume = {},
-                                     const std::optional<ValueRange>& data = {});
-/// The same for a volume, in its window.
-std::vector<std::string> writeTfFile(const TransferFunction& tf, const Volume& volume, const std::string& path);
+/// By suffix: for another program (tf_format.h); anything else as *.tf.json. Through a temporary file beside `path`
+/// that is renamed. Returns what the format cannot say, each a sentence without a full stop.
+std::vector<std::string> writeTfFile(const TfToWrite& tf, const std::string& path);
 /// Whether writeTfFile() writes what is made for another program.
 bool isWrittenForOthers(const std::string& path);
 
