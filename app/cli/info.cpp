@@ -25,7 +25,7 @@ std::string textOf(const Volume& v) {
         {"type", name(v.sampleType())},
         {"spacing", vectorText(v.geometry().spacing) + unit},
         {"origin", vectorText(v.geometry().origin) + unit},
-        {"frame", v.geometry().worldAxes == WorldAxes::Patient ? "patient (LPS, mm)" : "the file's own"},
+        {"frame", v.geometry().worldAxes == WorldAxes::Patient ? "patient (LPS," + unit + ")" : "the file's own"},
         {"axes", axesText(v.geometry())},
         {"range", rangeText(v.range().lo, v.range().hi)},
     };
@@ -58,6 +58,7 @@ Json jsonOf(const Volume& v) {
             {"spacing", jsonFromVector(v.geometry().spacing)},
             {"origin", jsonFromVector(v.geometry().origin)},
             {"frame", v.geometry().worldAxes == WorldAxes::Patient ? "patient" : "file"},
+            {"length_unit", plainSign(unitOf(v.geometry()))},
             {"directions", directions(v.geometry())},
             {"range", jsonFromRange(v.range())},
             {"data_range", jsonFromRange(v.dataRange())},

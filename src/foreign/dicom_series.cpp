@@ -292,6 +292,7 @@ ReaderLayout DicomSeries::layout(int step) const {
     layout.origin = g.origin;
     layout.directions = g.directions;
     layout.worldAxes = g.worldAxes;
+    layout.lengthUnit = g.lengthUnit;
     layout.array = m_name;
     layout.notices = m_notices;
     layout.notices.insert(layout.notices.end(), m_stack.notices.begin(), m_stack.notices.end());

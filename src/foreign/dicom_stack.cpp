@@ -260,6 +260,7 @@ void placeGrid(DicomStack& stack, const std::vector<DicomFrame>& frames, const P
     if (!(geometry.spacing.z > 0)) geometry.spacing.z = 1;
     const bool isPlaced = first.axes && places.areKnown;
     geometry.worldAxes = isPlaced ? WorldAxes::Patient : WorldAxes::File;
+    if (!isPlaced) geometry.lengthUnit = LengthUnit::Millimetre; // as DICOM has it, wherever that is
     if (!first.spacing)
         stack.notices.emplace_back("the files do not say how far pixels are from each other: 1 mm is taken");
     if (slices.size() > 1 && !places.areKnown)

@@ -58,7 +58,7 @@ SceneOverlay readOverlay(const OverlayView& view, const Geometry& first, const J
     if (!volume->hasValidVoxels() || volume->isConstant())
         throw FileError("all values of the overlay are the same, so that there is nothing to see of it", where,
                         "choose another file or, of a file with several components, another one of these");
-    const OverlayPlace place = overlayPlace(first, volume->geometry());
+    const OverlayPlace place = overlayPlace(first, inUnit(volume->geometry(), unitOf(first)));
     if (const double gap = boxGap(first, place.geometry); gap > 0)
         throw FileError(missText(first, gap), where,
                         "check that both are of one patient and one coordinate system, or register them first");

@@ -14,6 +14,7 @@
 #include "base/enum_names.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "volume/orientation.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -286,7 +287,8 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
 
 // ---- grids
 
-bool onSameGrid(const Geometry& a, const Geometry& b) {
+bool onSameGrid(const Geometry& a, const Geometry& other) {
+    const Geometry b = inUnit(other, unitOf(a));
     const auto near = [](const Vec3& p, const Vec3& q, double scale) {
         return std::abs(p.x - q.x) + std::abs(p.y - q.y) + std::abs(p.z - q.z) <= 1e-6 * scale;
     };
@@ -296,7 +298,7 @@ bool onSameGrid(const Geometry& a, const Geometry& b) {
 }
 
 Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl& job) {
-    const Geometry& from = volume.geometry();
+    const Geometry from = inUnit(volume.geometry(), unitOf(grid));
     const Int3 n = from.dims;
     const Vec3 lo = from.voxelBoxMin(), hi = from.voxelBoxMax();
     std::vector<float> out(voxelCount(grid.dims), kInvalid);

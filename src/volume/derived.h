@@ -45,9 +45,10 @@ inline constexpr auto kNamesOf<VolatilityKind> = enumNames("volatility", "popula
 std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation,
                                    const JobControl& job = {}, VolatilityKind volatility = VolatilityKind::Population);
 
-/// Trilinear samples of `volume` at the voxels of `grid`, in the world; invalid beyond its box. Float.
+/// Trilinear samples of `volume` at the voxels of `grid`, in the world (where both say in which units, these are
+/// converted); invalid beyond its box. Float.
 Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl& job = {});
 /// Whether that would change nothing but the type.
-bool onSameGrid(const Geometry& a, const Geometry& b);
+bool onSameGrid(const Geometry& a, const Geometry& other);
 
 } // namespace pellucid

@@ -33,7 +33,24 @@ std::string coordinatesText(PatientAxes axes, const Geometry& geometry) {
     return axes == PatientAxes::Ras ? "RAS" : "LPS";
 }
 
-const char* lengthUnit(const Geometry& geometry) { return geometry.worldAxes == WorldAxes::Patient ? "mm" : "units"; }
+LengthUnit unitOf(const Geometry& geometry) {
+    if (geometry.lengthUnit != LengthUnit::Unknown) return geometry.lengthUnit;
+    return geometry.worldAxes == WorldAxes::Patient ? LengthUnit::Millimetre : LengthUnit::Unknown;
+}
+
+const char* lengthUnit(const Geometry& geometry) { return sign(unitOf(geometry)); }
+
+Geometry inUnit(const Geometry& geometry, LengthUnit unit) {
+    const LengthUnit own = unitOf(geometry);
+    if (own == unit || own == LengthUnit::Unknown || unit == LengthUnit::Unknown) return geometry;
+    const double scale = millimetresIn(own) / millimetresIn(unit);
+    Geometry scaled = geometry;
+    scaled.spacing *= scale;
+    scaled.origin *= scale;
+    scaled.referenceLength *= scale;
+    scaled.lengthUnit = unit;
+    return scaled;
+}
 
 char patientLetter(int axis, bool positive) {
     constexpr std::array<const char*, 3> kLetters{"RL", "AP", "IS"};

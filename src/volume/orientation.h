@@ -20,8 +20,12 @@ Vec3 inAxes(PatientAxes axes, const Geometry& geometry, const Vec3& world);
 /// "LPS" or "RAS"; empty where the world is no patient's.
 std::string coordinatesText(PatientAxes axes, const Geometry& geometry);
 
-/// What lengths of the world are measured in: "mm" where it is a patient's, else "units".
+/// What lengths of the world are measured in: as the file says or, where the world is a patient's, millimetres.
+LengthUnit unitOf(const Geometry& geometry);
+/// The same in words: "mm", "µm"; "units" where it is not known.
 const char* lengthUnit(const Geometry& geometry);
+/// The same volume with lengths in another unit; as it is where either is not known.
+Geometry inUnit(const Geometry& geometry, LengthUnit unit);
 
 /// The letter of a direction along world axis x, y or z (0, 1, 2) in the patient's frame: L, P, S where `positive`,
 /// else R, A, I.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/enum_names.h"
+#include "base/length_unit.h"
 #include "volume/grid.h"
 #include "volume/sample_array.h"
 
@@ -38,8 +39,8 @@ struct ValueRange {
 
 /// What the axes of the world are.
 enum class WorldAxes {
-    File,   ///< the file's own; units as it gives them
-    Patient ///< millimetres to the patient's left, back and head (LPS)
+    File,   ///< the file's own; lengths in the unit that it gives
+    Patient ///< to the patient's left, back and head (LPS); millimetres where a file says so
 };
 
 /// Where the voxels lie (docs/method.md, "Volume and intensity"): centre of voxel v at origin + A·v, world units; A, of
@@ -52,6 +53,7 @@ struct Geometry {
     Vec3 origin{0, 0, 0};
     Mat3 directions{1}; ///< unit columns: where the axes i, j, k point in the world; need not be at right angles
     WorldAxes worldAxes = WorldAxes::File;
+    LengthUnit lengthUnit = LengthUnit::Unknown; ///< as the file says; see unitOf()
     /// World units; 0: the smallest spacing. A coarser copy of a volume keeps the length of the volume that it was made
     /// from, so that opacities and saliency mean the same in both.
     double referenceLength = 0;

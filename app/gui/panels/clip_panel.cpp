@@ -232,7 +232,8 @@ void ClipPanel::follow() {
     m_holder->setVisible(liesOnSomething);
     showNumber(*m_holder, clipping.rest.isNone() ? 100 : 100 * clipping.rest.density);
     const double size = 2 * geometry.radius();
-    const QString unit = geometry.worldAxes == WorldAxes::Patient ? tr(" mm") : QString();
+    const bool hasUnit = unitOf(geometry) != LengthUnit::Unknown;
+    const QString unit = hasUnit ? QStringLiteral(" ") + QString::fromUtf8(lengthUnit(geometry)) : QString();
     for (std::size_t i = 0; i < clipping.planes.size(); ++i) {
         const ClipPlane& plane = clipping.planes[i];
         for (int a = 0; a < 3; ++a) showNumber(*m_planes[i].boxes[static_cast<std::size_t>(a)], plane.normal[a]);

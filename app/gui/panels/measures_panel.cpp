@@ -122,7 +122,8 @@ QString MeasuresPanel::placesOf(const Ruler& ruler) const {
     for (const Vec3& p : ruler.points) places << tr("at %1").arg(placeText(geometry, axes, p));
     QString text = places.join('\n');
     if (ruler.kind == RulerKind::Sphere)
-        text += tr("\nradius %1 %2").arg(numberText(ruler.radius, ruler.radius), QLatin1String(lengthUnit(geometry)));
+        text +=
+            tr("\nradius %1 %2").arg(numberText(ruler.radius, ruler.radius), QString::fromUtf8(lengthUnit(geometry)));
     return text;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kRow = 22, kStrip = 6;
 
-QString unitOf(const Scene& scene) { return QLatin1String(lengthUnit(scene.volume->geometry())); }
+QString unitOf(const Scene& scene) { return QString::fromUtf8(lengthUnit(scene.volume->geometry())); }
 
 /// −1: of what is in none.
 QString nameOf(const ProbeController& probe, int feature) {

@@ -476,7 +476,7 @@ QString SlicePane::titleText() const {
                        .arg(name)
                        .arg(static_cast<int>(std::lround(voxel[a])) + 1)
                        .arg(geometry.dims[a])
-                       .arg(numberText(at, 2 * geometry.radius()), QLatin1String(lengthUnit(geometry)));
+                       .arg(numberText(at, 2 * geometry.radius()), QString::fromUtf8(lengthUnit(geometry)));
     for (const QString& line : {m_fields.name(), m_fields.stateText()})
         if (!line.isEmpty()) text += "\n" + line;
     return text;
@@ -625,8 +625,8 @@ void SlicePane::paintScale(QPainter& painter, const SlicePlane& plane) const {
           QLineF(right, y - 3, right, y + 3)})
         haloLine(painter, line, theme::kMark);
     const QFontMetricsF metrics(painter.font());
-    const QString text = QStringLiteral("%1 %2").arg(numberText(length, length),
-                                                     QLatin1String(lengthUnit(m_services.scene().volume->geometry())));
+    const QString text = QStringLiteral("%1 %2").arg(
+        numberText(length, length), QString::fromUtf8(lengthUnit(m_services.scene().volume->geometry())));
     haloText(painter, {right - metrics.horizontalAdvance(text), y - 6}, text, theme::kMark);
 }
 

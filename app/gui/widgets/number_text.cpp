@@ -24,7 +24,7 @@ QString placeText(const Geometry& geometry, PatientAxes axes, const Vec3& world)
     const Vec3 place = inAxes(axes, geometry, world);
     const QString text = QStringLiteral("%1, %2, %3 %4")
                              .arg(numberText(place.x, size), numberText(place.y, size), numberText(place.z, size),
-                                  QLatin1String(lengthUnit(geometry)));
+                                  QString::fromUtf8(lengthUnit(geometry)));
     const std::string letters = coordinatesText(axes, geometry);
     return letters.empty() ? text : QStringLiteral("%1 (%2)").arg(text, QString::fromStdString(letters));
 }

@@ -38,23 +38,6 @@ bool isPressure(const std::string& unit) {
     return isOneOf(unit, {"Pa", "hPa", "kPa", "bar", "mbar", "millibar", "millibars", "decibar", "dbar"});
 }
 
-/// Metres in a unit of length; empty: it is none.
-std::optional<double> metresIn(const std::string& unit) {
-    static constexpr std::pair<const char*, double> kUnits[] = {
-        {"km", 1e3},          {"kilometer", 1e3},    {"kilometre", 1e3},
-        {"kilometers", 1e3},  {"kilometres", 1e3},   {"m", 1},
-        {"meter", 1},         {"metre", 1},          {"meters", 1},
-        {"metres", 1},        {"cm", 1e-2},          {"centimeter", 1e-2},
-        {"centimetre", 1e-2}, {"mm", 1e-3},          {"millimeter", 1e-3},
-        {"millimetre", 1e-3}, {"millimeters", 1e-3}, {"um", 1e-6},
-        {"µm", 1e-6},         {"micron", 1e-6},      {"microns", 1e-6},
-        {"micrometer", 1e-6}, {"micrometre", 1e-6},  {"nm", 1e-9},
-        {"nanometer", 1e-9},  {"nanometre", 1e-9}};
-    for (const auto& [name, metres] : kUnits)
-        if (unit == name) return metres;
-    return {};
-}
-
 /// The kind that a name tells, where nothing better does.
 AxisKind kindOfName(const std::string& name) {
     if (isOneOf(name, {"time", "t", "times"})) return AxisKind::Time;
@@ -118,8 +101,10 @@ void readSpacing(const ArrayFile& file, const ArrayVariable& variable, std::vect
         const bool areAll = numbers.size() == axes.size(), areOfPlaces = numbers.size() == places.size();
         if (numbers.size() != 1 && !areAll && !areOfPlaces) continue;
         if (!std::ranges::all_of(numbers, [](double d) { return std::isfinite(d) && d > 0; })) continue;
-        for (std::size_t n = 0; n < places.size(); ++n)
+        for (std::size_t n = 0; n < places.size(); ++n) {
             axes[places[n]].step = numbers.size() == 1 ? numbers[0] : areOfPlaces ? numbers[n] : numbers[places[n]];
+            if (std::string_view(name).ends_with("_um")) axes[places[n]].unit = "um";
+        }
         return;
     }
 }
@@ -232,28 +217,31 @@ void readCoordinates(const ArrayFile& file, Axis& axis, std::size_t number, std:
     axis.first = at.front();
 }
 
-/// One unit for all lengths; what cannot be made one is told.
-void unifyUnits(std::vector<Axis*>& places, std::vector<std::string>& notices) {
+/// One unit for all lengths, which is returned where it is known; what cannot be made one is told.
+LengthUnit unifyUnits(std::vector<Axis*>& places, std::vector<std::string>& notices) {
     std::vector<std::string> units;
     for (const Axis* axis : places)
         if (!axis->unit.empty() && std::ranges::find(units, axis->unit) == units.end()) units.push_back(axis->unit);
-    if (units.size() < 2) return;
-    const auto isLength = [](const std::string& unit) { return metresIn(unit).has_value(); };
+    if (units.empty()) return LengthUnit::Unknown;
+    if (units.size() == 1) return lengthUnitNamed(units.front()).value_or(LengthUnit::Unknown);
+    const auto isLength = [](const std::string& unit) { return lengthUnitNamed(unit).has_value(); };
     const auto isAngle = [](const std::string& unit) { return unit.starts_with("degree"); };
-    if (std::ranges::all_of(units, isAngle)) return;
+    if (std::ranges::all_of(units, isAngle)) return LengthUnit::Unknown;
     if (!std::ranges::all_of(units, isLength)) {
         notices.push_back("the axes have different units (" + joined(units, ", ") +
                           "): their numbers are taken as they are");
-        return;
+        return LengthUnit::Unknown;
     }
-    const std::string unit = places.back()->unit.empty() ? units.front() : places.back()->unit; // the fastest one's
+    const std::string name = places.back()->unit.empty() ? units.front() : places.back()->unit; // the fastest one's
+    const LengthUnit unit = *lengthUnitNamed(name);
     for (Axis* axis : places) {
         if (axis->unit.empty()) continue;
-        const double factor = *metresIn(axis->unit) / *metresIn(unit);
+        const double factor = millimetresIn(*lengthUnitNamed(axis->unit)) / millimetresIn(unit);
         axis->step *= factor;
         axis->first *= factor;
     }
-    notices.push_back("lengths are given in " + joined(units, " and ") + ": shown in " + unit);
+    notices.push_back("lengths are given in " + joined(units, " and ") + ": shown in " + name);
+    return unit;
 }
 
 /// Places in the world: x, y and z of the file along those of the world, whichever way they are stored.
@@ -322,7 +310,7 @@ ArrayAxes axesOf(const ArrayFile& file, const ArrayVariable& variable) {
         places.push_back(&axes[a]);
     }
     if (!hasSteps) readSpacing(file, variable, axes, chosen.places);
-    unifyUnits(places, chosen.notices);
+    chosen.lengthUnit = unifyUnits(places, chosen.notices);
     placeInWorld(places, chosen);
     readTimes(file, axes, chosen);
     return chosen;

@@ -10,6 +10,7 @@ struct ArrayAxes {
     std::vector<std::size_t> steps;        ///< along these are time steps, slowest first
     std::optional<std::size_t> components; ///< along this are the components of a voxel
     Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
+    LengthUnit lengthUnit = LengthUnit::Unknown; ///< of spacing and origin
     Mat3 directions{1};
     std::vector<double> times; ///< of the steps, in timeUnit; empty: not known
     std::string timeUnit;

@@ -219,6 +219,7 @@ ReaderLayout ArrayVolume::layout(int step) const {
     }
     layout.spacing = m_axes.spacing;
     layout.origin = m_axes.origin;
+    layout.lengthUnit = m_axes.lengthUnit;
     layout.directions = m_axes.directions;
     layout.array = printable(m_chosen->name);
     for (const std::string& notice : m_notices) layout.notices.push_back(printable(notice));

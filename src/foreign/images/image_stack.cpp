@@ -193,6 +193,7 @@ void ImageStack::noteMetadata() {
     const auto nameOf = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
     const SliceMetadata& first = *m_sliceMetadata;
     m_order.spacing = first.spacing;
+    m_order.lengthUnit = first.lengthUnit;
     m_notices.insert(m_notices.end(), first.notices.begin(), first.notices.end());
     if (!m_otherSpacing.empty())
         m_notices.push_back(nameOf(m_otherSpacing) + " says another distance between pixels than " +
@@ -304,6 +305,7 @@ ReaderLayout ImageStack::layout(int step) const {
     for (const int size : {m_shape.width, m_shape.height, m_order.slices}) layout.axes.push_back({size});
     if (m_order.channels > 1) layout.axes.push_back({m_order.channels, true});
     layout.spacing = m_order.spacing;
+    layout.lengthUnit = m_order.lengthUnit;
     layout.scaling = m_order.scaling;
     layout.array = m_image;
     layout.notices = m_notices;

@@ -28,36 +28,14 @@ int countIn(const std::string& text, int otherwise) {
 double lengthOf(double number, double otherwise) { return number > 0 && std::isfinite(number) ? number : otherwise; }
 double lengthIn(const std::string& text, double otherwise) { return lengthOf(numberIn(trimmed(text)), otherwise); }
 
-/// A unit as the tables below have it: ImageJ escapes what is not ASCII, and µ is a Greek letter to some.
-std::string plainUnit(const std::string& unit) {
-    std::string plain = trimmed(unit);
-    for (const std::string_view mu : {"\\u00B5", "\\u00b5", "\xce\xbc", "\xb5"})
-        if (plain.starts_with(mu)) return "µ" + plain.substr(mu.size());
-    return plain.size() > 2 && !plain.starts_with("µ") && !plain.starts_with("Å") ? lowerCase(plain) : plain;
-}
-
-std::optional<double> found(const std::map<std::string, double>& units, const std::string& unit) {
-    const auto it = units.find(plainUnit(unit));
-    return it == units.end() ? std::nullopt : std::optional(it->second);
-}
-
-std::optional<double> micrometresOf(const std::string& unit) {
-    static const std::map<std::string, double> kUnits{
-        {"µm", 1},           {"um", 1},           {"micron", 1},       {"microns", 1},   {"micrometer", 1},
-        {"micrometre", 1},   {"nm", 1e-3},        {"pm", 1e-6},        {"fm", 1e-9},     {"Å", 1e-4},
-        {"mm", 1e3},         {"millimeter", 1e3}, {"nanometer", 1e-3}, {"cm", 1e4},      {"centimeter", 1e4},
-        {"dm", 1e5},         {"m", 1e6},          {"meter", 1e6},      {"km", 1e9},      {"Mm", 1e12},
-        {"millimetre", 1e3}, {"nanometre", 1e-3}, {"centimetre", 1e4}, {"metre", 1e6},   {"in", 25400},
-        {"inch", 25400},     {"inches", 25400},   {"ft", 304800},      {"feet", 304800}, {"thou", 25.4}};
-    return found(kUnits, unit);
-}
-
 std::optional<double> secondsOf(const std::string& unit) {
     static const std::map<std::string, double> kUnits{
         {"s", 1},     {"sec", 1},     {"second", 1},  {"seconds", 1},  {"ms", 1e-3}, {"msec", 1e-3}, {"µs", 1e-6},
         {"us", 1e-6}, {"usec", 1e-6}, {"µsec", 1e-6}, {"ns", 1e-9},    {"min", 60},  {"minute", 60}, {"minutes", 60},
         {"h", 3600},  {"hr", 3600},   {"hour", 3600}, {"hours", 3600}, {"d", 86400}, {"day", 86400}, {"days", 86400}};
-    return found(kUnits, unit);
+    const std::string word = withMicroSign(unit);
+    const auto it = kUnits.find(word.size() > 2 ? lowerCase(word) : word);
+    return it == kUnits.end() ? std::nullopt : std::optional(it->second);
 }
 
 /// `interval` 0: not known.
@@ -82,6 +60,8 @@ void setSpacing(PageOrder& order, const Distances& stated) {
     while (first < 3 && !(distances[first] > 0)) ++first;
     if (first == 3) return;
     const auto axis = [](int a) { return std::string(1, "xyz"[a]); };
+    const std::optional<LengthUnit> to = lengthUnitNamed(units[static_cast<std::size_t>(first)]);
+    order.lengthUnit = to.value_or(LengthUnit::Unknown);
     for (int a = 0; a < 3; ++a) {
         const std::string &unit = units[static_cast<std::size_t>(a)], &common = units[static_cast<std::size_t>(first)];
         order.spacing[a] = distances[first];
@@ -91,14 +71,16 @@ void setSpacing(PageOrder& order, const Distances& stated) {
                                         ": the distance along " + axis(first) + " is used");
             continue;
         }
-        const std::optional<double> from = micrometresOf(unit), to = micrometresOf(common);
-        const bool isSame = plainUnit(unit) == plainUnit(common);
+        const std::optional<LengthUnit> from = lengthUnitNamed(unit);
+        const bool isSame = trimmed(unit) == trimmed(common) || (from && from == to);
         order.spacing[a] =
-            lengthOf(isSame || !from || !to ? distances[a] : distances[a] * *from / *to, distances[first]);
-        if (!isSame && (!from || !to))
-            order.notices.push_back("distances along " + axis(a) + " are in " + inQuotes(unit) + ", those along " +
-                                    axis(first) + " in " + inQuotes(common) +
-                                    ", which cannot be converted: the numbers are taken as they are");
+            lengthOf(isSame || !from || !to ? distances[a] : distances[a] * millimetresIn(*from) / millimetresIn(*to),
+                     distances[first]);
+        if (isSame || (from && to)) continue;
+        order.lengthUnit = LengthUnit::Unknown;
+        order.notices.push_back("distances along " + axis(a) + " are in " + inQuotes(unit) + ", those along " +
+                                axis(first) + " in " + inQuotes(common) +
+                                ", which cannot be converted: the numbers are taken as they are");
     }
 }
 
@@ -480,7 +462,7 @@ SliceMetadata sliceMetadataIn(const FirstPage& page) {
     const bool isApartKnown = distances.numbers.z > 0;
     setSpacing(order, distances);
     if (!isApartKnown) order.spacing.z = 1;
-    return {order.spacing, isApartKnown, order.scaling, std::move(order.notices)};
+    return {order.spacing, order.lengthUnit, isApartKnown, order.scaling, std::move(order.notices)};
 }
 
 } // namespace pellucid

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/length_unit.h"
 #include "foreign/images/picture_file.h"
 #include "volume/grid.h"
 
@@ -46,9 +47,10 @@ struct PageOrder {
     int elsewhere = 0; ///< pictures in other files
     int images = 0;    ///< of ImageJ, which writes one directory alone for stacks of 4 GB and more; 0: it does not say
     Vec3 spacing{1, 1, 1};
-    double stepSeconds = 0;              ///< from step to step; 0: not known
-    std::optional<ValueScaling> scaling; ///< empty: values are as stored
-    std::string software;                ///< "ImageJ", "OME"; empty: neither
+    LengthUnit lengthUnit = LengthUnit::Unknown; ///< of `spacing`
+    double stepSeconds = 0;                      ///< from step to step; 0: not known
+    std::optional<ValueScaling> scaling;         ///< empty: values are as stored
+    std::string software;                        ///< "ImageJ", "OME"; empty: neither
     std::vector<std::string> notices;
 
     int sizeAlong(char axis) const { return axis == 'z' ? slices : axis == 'c' ? channels : steps; }
@@ -58,7 +60,8 @@ PageOrder pageOrderIn(const FirstPage& page);
 
 /// What a file says that is one slice of several.
 struct SliceMetadata {
-    Vec3 spacing{1, 1, 1};     ///< 1 where it does not say
+    Vec3 spacing{1, 1, 1}; ///< 1 where it does not say
+    LengthUnit lengthUnit = LengthUnit::Unknown;
     bool isApartKnown = false; ///< whether it says how far slices are apart
     std::optional<ValueScaling> scaling;
     std::vector<std::string> notices;

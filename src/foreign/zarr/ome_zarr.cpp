@@ -35,21 +35,12 @@ std::string joinedPath(const std::string& folder, const std::string& name) {
     return folder.empty() ? name : folder + "/" + name;
 }
 
-/// Of a length in metres, or of a time in seconds; empty for what is neither.
-std::optional<double> sizeOfUnit(const std::string& unit) {
-    static const std::map<std::string, double> kPrefixes{{"", 1},         {"centi", 1e-2}, {"milli", 1e-3},
-                                                         {"micro", 1e-6}, {"nano", 1e-9},  {"pico", 1e-12},
-                                                         {"deci", 1e-1},  {"kilo", 1e3},   {"femto", 1e-15}};
-    if (unit == "angstrom") return 1e-10;
-    if (unit == "minute") return 60;
-    if (unit == "hour") return 3600;
-    if (unit == "day") return 86400;
-    for (const char* base : {"meter", "second"})
-        if (unit.ends_with(base))
-            if (const auto prefix = kPrefixes.find(unit.substr(0, unit.size() - std::string(base).size()));
-                prefix != kPrefixes.end())
-                return prefix->second;
-    return {};
+std::optional<double> secondsIn(const std::string& unit) {
+    static const std::map<std::string, double> kUnits{
+        {"second", 1},  {"millisecond", 1e-3}, {"microsecond", 1e-6}, {"nanosecond", 1e-9},
+        {"minute", 60}, {"hour", 3600},        {"day", 86400}};
+    const auto it = kUnits.find(unit);
+    return it == kUnits.end() ? std::nullopt : std::optional(it->second);
 }
 
 /// What an image says of its axes.
@@ -349,25 +340,29 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
         }
     image.origins.resize(image.levels.size(), Vec3(0));
     std::string unit;
+    bool isOneUnit = true;
     for (int a = 0; a < 3; ++a) {
         const std::size_t at = image.axes.find(kSpace[static_cast<std::size_t>(a)]);
         if (at == std::string::npos) continue;
         if (unit.empty()) unit = axes.units[at];
-        const auto own = sizeOfUnit(axes.units[at]), first = sizeOfUnit(unit);
-        const double scale = own && first ? *own / *first : 1; // in the unit of x
-        if (!axes.units[at].empty() && axes.units[at] != unit && !(own && first))
+        const auto own = lengthUnitNamed(axes.units[at]), first = lengthUnitNamed(unit);
+        const double scale = own && first ? millimetresIn(*own) / millimetresIn(*first) : 1; // in the unit of x
+        if (!axes.units[at].empty() && axes.units[at] != unit && !(own && first)) {
+            isOneUnit = false;
             image.notices.push_back("the axes have different units (" + printable(unit) + ", " +
                                     printable(axes.units[at]) + "): their numbers are taken as they are");
+        }
         image.spacing[a] = placements.front().steps[at] * scale;
         for (std::size_t level = 0; level < image.levels.size(); ++level)
             (*image.origins[level])[a] = placements[level].offsets[at] * scale;
     }
+    if (isOneUnit) image.lengthUnit = lengthUnitNamed(unit).value_or(LengthUnit::Unknown);
     for (std::size_t level = 1; level < image.levels.size(); ++level)
         if (!placements[level].hasOwnOffsets) image.origins[level].reset();
     if (const std::size_t at = image.axes.find('t'); at != std::string::npos) {
         image.stepWidth = placements.front().steps[at];
         image.firstStep = placements.front().offsets[at];
-        if (const auto seconds = sizeOfUnit(axes.units[at])) {
+        if (const auto seconds = secondsIn(axes.units[at])) {
             image.stepWidth *= *seconds;
             image.firstStep *= *seconds;
             image.timeUnit = "s";
@@ -410,6 +405,7 @@ void OmeZarr::addArray(const std::string& folder, const std::string& name, const
     for (const std::size_t step : placed.steps) image.axes[others[step]] = 't';
     for (std::size_t n = 0; n < places; ++n) image.axes[others[placed.places[places - 1 - n]]] = kSpace[n];
     image.spacing = placed.spacing;
+    image.lengthUnit = placed.lengthUnit;
     image.origins = {placed.origin};
     image.directions = placed.directions;
     image.packed = packedValuesOf(file, variable);
@@ -434,6 +430,7 @@ ReaderLayout OmeZarr::layout(int step) const {
     for (const char axis : kSpace) layout.axes.push_back({image.size(axis)});
     if (image.size('c') > 1) layout.axes.push_back({image.size('c'), true});
     layout.spacing = image.spacing;
+    layout.lengthUnit = image.lengthUnit;
     layout.origin = *image.origins.front();
     layout.directions = image.directions;
     for (int a = 0; a < 3; ++a) // as axes that run the other way

@@ -32,7 +32,8 @@ private:
         std::vector<ZarrArray> levels;
         std::string axes; ///< a letter of "tczyx" for each, or "1": it has one entry and is no place
         Vec3 spacing{1, 1, 1};
-        std::vector<std::optional<Vec3>> origins; ///< of each level; empty: it does not say
+        LengthUnit lengthUnit = LengthUnit::Unknown; ///< of spacing and origins
+        std::vector<std::optional<Vec3>> origins;    ///< of each level; empty: it does not say
         Mat3 directions{1};
         std::optional<PackedValues> packed;  ///< of an array that is no image
         double firstStep = 0, stepWidth = 0; ///< in timeUnit; a width of 0: not known

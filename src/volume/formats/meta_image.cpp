@@ -117,11 +117,11 @@ WorldAxes worldAxesIn(const TextHeader& header) {
     return letters.size() >= 3 && letters.find_first_not_of("rlapsi") >= 3 ? WorldAxes::Patient : WorldAxes::File;
 }
 
-/// Millimetres of the header's unit of length; 1 where it names none. Throws FileError for one that is not known.
-double millimetresIn(const TextHeader& header) {
+/// The header's unit of length; Unknown where it names none. Throws FileError for one that is not known.
+LengthUnit lengthUnitIn(const TextHeader& header) {
     const std::string unit = header.get("DistanceUnits");
-    if (unit.empty() || unit == "?") return 1;
-    if (const auto millimetres = millimetresPer(unit)) return *millimetres;
+    if (unit.empty() || unit == "?") return LengthUnit::Unknown;
+    if (const auto known = lengthUnitNamed(unit)) return *known;
     header.fail("the DistanceUnits " + inQuotes(unit) + " are not known", "write um, mm or cm");
 }
 
@@ -224,12 +224,13 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
         layout.origin[static_cast<int>(a)] = origin[a];
     layout.directions = directionsIn(header, sizes.size());
     layout.worldAxes = worldAxesIn(header);
-    const double millimetres = millimetresIn(header);
-    layout.spacing *= millimetres;
-    layout.origin *= millimetres;
-    if (millimetres != 1 && layout.worldAxes == WorldAxes::File)
-        layout.notices.push_back("the header gives lengths in " + printable(header.get("DistanceUnits")) +
-                                 ": shown in mm");
+    const LengthUnit ofFile = lengthUnitIn(header);
+    if (layout.worldAxes == WorldAxes::File) { // where there is no patient, lengths stay in the unit of the file
+        layout.lengthUnit = ofFile;
+    } else {
+        layout.spacing *= millimetresIn(ofFile);
+        layout.origin *= millimetresIn(ofFile);
+    }
     layout.scaling = scalingIn(header, layout.notices);
     layout.bigEndian = isBigEndian(header);
     layout.encoding = encodingIn(header);

@@ -36,6 +36,7 @@ std::string headerText(const FramesToWrite& frames, const std::string& dataFile)
     text += withTime("", "0 0 0 1") + "Offset = " + withTime(vectorText(g.origin), exactText(times.first)) +
             "CenterOfRotation = " + withTime("0 0 0", "0");
     if (g.worldAxes == WorldAxes::Patient) text += "AnatomicalOrientation = " + anatomy(g) + "\n";
+    if (g.lengthUnit != LengthUnit::Unknown) text += "DistanceUnits = " + std::string(plainSign(g.lengthUnit)) + "\n";
     text += "ElementSpacing = " + withTime(vectorText(g.spacing), exactText(times.width)) +
             "DimSize = " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) + " " +
             withTime(std::to_string(g.dims.z), std::to_string(frames.count)) +

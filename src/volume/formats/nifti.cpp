@@ -307,15 +307,17 @@ std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spac
     return sform ? sform : qform;
 }
 
-/// Millimetres of the header's unit of length.
-double millimetresIn(const NiftiHeader& header) {
-    constexpr int kMetre = 1, kMicrometre = 3;
-    return header.spaceUnit() == kMetre ? 1e3 : header.spaceUnit() == kMicrometre ? 1e-3 : 1.0;
+/// The header's unit of length.
+LengthUnit lengthUnitIn(const NiftiHeader& header) {
+    static const std::map<int, LengthUnit> kUnits{
+        {1, LengthUnit::Metre}, {2, LengthUnit::Millimetre}, {3, LengthUnit::Micrometre}};
+    const auto unit = kUnits.find(header.spaceUnit());
+    return unit == kUnits.end() ? LengthUnit::Unknown : unit->second;
 }
 
 void placeGrid(FileLayout& layout, const NiftiHeader& header) {
     const int axes = static_cast<int>(std::min<std::int64_t>(header.dim(0), 3));
-    const double millimetres = millimetresIn(header);
+    const LengthUnit ofFile = lengthUnitIn(header);
     for (int a = 1; a <= axes; ++a) {
         layout.spacing[a - 1] = header.pixdim(a);
         requireSpacing(layout.spacing[a - 1], static_cast<std::size_t>(a - 1), plainText(layout.spacing[a - 1]),
@@ -323,14 +325,16 @@ void placeGrid(FileLayout& layout, const NiftiHeader& header) {
     }
     if (const std::optional<Placement> placement = placementIn(header, layout.spacing, layout.notices)) {
         layout.worldAxes = WorldAxes::Patient;
+        const double millimetres = millimetresIn(ofFile);
         const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
         for (int a = 0; a < 3; ++a) {
             layout.origin[a] = placement->origin[a] == 0 ? 0 : flip[a] * placement->origin[a] * millimetres;
             layout.directions[a] = cleanDirection(flip * placement->axes[a]);
-            if (a < axes) layout.spacing[a] = placement->spacing[a];
+            if (a < axes) layout.spacing[a] = placement->spacing[a] * millimetres;
         }
+    } else {
+        layout.lengthUnit = ofFile;
     }
-    for (int a = 0; a < axes; ++a) layout.spacing[a] *= millimetres;
 }
 
 /// When the steps along the fourth axis were; none where that axis is no time, or the header does not tell.

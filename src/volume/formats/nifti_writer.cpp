@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "volume/formats/nifti_form.h"
 #include "volume/formats/writer.h"
+#include "volume/orientation.h"
 
 namespace pellucid {
 
@@ -79,6 +80,11 @@ private:
 /// The code of a unit of time; 0: there is none for it.
 int timeCode(const std::string& unit) { return unit == "s" ? 8 : unit == "ms" ? 16 : unit == "µs" ? 24 : 0; }
 
+/// The code of a unit of length, likewise.
+int lengthCode(LengthUnit unit) {
+    return unit == LengthUnit::Metre ? 1 : unit == LengthUnit::Millimetre ? 2 : unit == LengthUnit::Micrometre ? 3 : 0;
+}
+
 /// Row by row, 3 x 4.
 void placeGrid(Header& header, const NiftiForm& form, const Geometry& g) {
     header.putCode(form.sformCode, 1);
@@ -111,8 +117,7 @@ Header headerOf(const FramesToWrite& frames) {
     if (several) header.putReal(form.pixdim, frames.times ? frames.times->width : 1, 4);
     if (several && frames.times) header.putReal(form.timeOffset, frames.times->first);
     header.putReal(form.slope, 1);
-    const int millimetres = g.worldAxes == WorldAxes::Patient ? 2 : 0;
-    header.putUnits(millimetres + (several && frames.times ? timeCode(frames.times->unit) : 0));
+    header.putUnits(lengthCode(unitOf(g)) + (several && frames.times ? timeCode(frames.times->unit) : 0));
     const bool isTurned = g.directions != Mat3(1) || g.origin != Vec3(0);
     if (g.worldAxes == WorldAxes::Patient || isTurned) placeGrid(header, form, g);
     return header;
@@ -145,6 +150,8 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string&)
     const bool isTurned = g.directions != Mat3(1) || g.origin != Vec3(0);
     if (g.worldAxes == WorldAxes::File && isTurned)
         lost.emplace_back("NIfTI takes every place for one of a patient: the file will be read as such");
+    if (const LengthUnit unit = unitOf(g); unit != LengthUnit::Unknown && lengthCode(unit) == 0)
+        lost.push_back(std::string("NIfTI knows no unit of length called ") + sign(unit));
     if (!frames.times) return lost;
     if (!isKept(frames.times->width) || !isKept(frames.times->first))
         lost.emplace_back("NIfTI keeps times to seven digits");

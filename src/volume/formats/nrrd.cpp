@@ -203,26 +203,26 @@ std::vector<std::string> unitsIn(const TextHeader& header, const std::vector<std
     return units;
 }
 
-/// Millimetres of the header's unit of length; 1 where it names none that is known. Throws FileError where axes have
-/// different ones.
-double millimetresIn(const TextHeader& header, const std::vector<std::size_t>& inSpace, bool ofPatient,
-                     std::vector<std::string>& notices) {
+/// The header's unit of length; Unknown where it names none that is known. Throws FileError where axes have different
+/// ones.
+LengthUnit lengthUnitIn(const TextHeader& header, const std::vector<std::size_t>& inSpace, bool ofPatient,
+                        std::vector<std::string>& notices) {
     const std::vector<std::string> units = unitsIn(header, inSpace);
-    if (units.empty()) return 1;
-    const auto first = millimetresPer(units.front());
+    if (units.empty()) return LengthUnit::Unknown;
+    const auto first = lengthUnitNamed(units.front());
     for (const std::string& unit : units) {
-        const auto other = millimetresPer(unit);
+        const auto other = lengthUnitNamed(unit);
         if (lowerCase(unit) == lowerCase(units.front()) || (first && first == other)) continue;
         const std::string differ =
             "the header measures axes in different units, " + inQuotes(units.front()) + " and " + inQuotes(unit);
         if (ofPatient || (first && other)) header.fail(differ, "convert them, and correct space units or units");
         notices.push_back(printable(differ) + ": their numbers are taken as they are");
-        return 1;
+        return LengthUnit::Unknown;
     }
     if (!first && ofPatient)
         notices.push_back("the unit of length " + printable(inQuotes(units.front())) +
                           " is not known: millimetres are assumed");
-    return first.value_or(1);
+    return first.value_or(LengthUnit::Unknown);
 }
 
 /// What the header says of its axes one by one, with no direction in space. Numbers are NaN where it does not say.
@@ -286,8 +286,9 @@ void placeGrid(FileLayout& layout, const TextHeader& header) {
     for (std::size_t a = 0; a < axes && inSpace.size() < 3; ++a)
         if (!layout.axes[a].components && !layout.axes[a].time) inSpace.push_back(a);
     // Where there is no patient, lengths stay in the unit of the file.
-    const double millimetres = millimetresIn(header, inSpace, patient.has_value(), layout.notices);
-    const double unit = patient ? millimetres : 1;
+    const LengthUnit ofFile = lengthUnitIn(header, inSpace, patient.has_value(), layout.notices);
+    if (!patient) layout.lengthUnit = ofFile;
+    const double unit = patient ? millimetresIn(ofFile) : 1;
     for (std::size_t i = 0; i < inSpace.size(); ++i) {
         const std::size_t a = inSpace[i];
         double& spacing = layout.spacing[static_cast<int>(i)];

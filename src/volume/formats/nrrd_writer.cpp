@@ -57,6 +57,11 @@ std::string headerText(const Geometry& g, SampleType type, const std::string& en
     if (several && times) // what is said of axes in space is said by their directions
         text += "\nspacings: nan nan nan " + exactText(times->width) + "\naxis mins: nan nan nan " +
                 exactText(times->first) + "\nunits: \"\" \"\" \"\" " + quoted(times->unit);
+    const LengthUnit unit = g.lengthUnit;
+    if (unit != LengthUnit::Unknown) {
+        const std::string name = '"' + std::string(plainSign(unit)) + '"';
+        text += "\nspace units: " + name + " " + name + " " + name;
+    }
     return text + "\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +
            "\nencoding: " + encoding + "\nspace origin: " + vector(g.origin) + "\n\n";
 }

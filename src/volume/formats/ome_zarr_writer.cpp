@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "volume/excerpt.h"
 #include "volume/formats/writer.h"
+#include "volume/orientation.h"
 #include "volume/voxel_loops.h"
 
 namespace pellucid {
@@ -107,6 +108,9 @@ std::string timeUnit(const std::string& unit) {
     return unit == "h" ? "hour" : unit == "d" ? "day" : "";
 }
 
+/// Of the units of length that OME-Zarr lists, all that are known here but thousandths of an inch.
+bool isUnitOfZarr(LengthUnit unit) { return unit != LengthUnit::Unknown && unit != LengthUnit::Thou; }
+
 json axesOf(const FramesToWrite& frames) {
     json axes = json::array();
     if (frames.count > 1) {
@@ -116,7 +120,8 @@ json axesOf(const FramesToWrite& frames) {
     }
     for (const char* axis : {"z", "y", "x"}) {
         axes.push_back({{"name", axis}, {"type", "space"}});
-        if (frames.geometry.worldAxes == WorldAxes::Patient) axes.back()["unit"] = "millimeter";
+        if (const LengthUnit unit = unitOf(frames.geometry); isUnitOfZarr(unit))
+            axes.back()["unit"] = standardName(unit);
     }
     return axes;
 }
@@ -166,6 +171,7 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string&)
     std::vector<std::string> lost;
     if (g.directions != Mat3(1)) lost.emplace_back("OME-Zarr has no rotations: the volume will lie along the axes");
     if (g.worldAxes == WorldAxes::Patient) lost.emplace_back("OME-Zarr does not say that places are a patient's");
+    if (g.lengthUnit == LengthUnit::Thou) lost.emplace_back("OME-Zarr knows no unit of length called thou");
     if (frames.times && !frames.times->unit.empty() && timeUnit(frames.times->unit).empty())
         lost.push_back("OME-Zarr knows no unit of time called " + inQuotes(frames.times->unit));
     return lost;

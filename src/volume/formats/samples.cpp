@@ -730,7 +730,8 @@ Vec3 cleanDirection(const Vec3& direction) {
 Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job) {
     const std::string& path = source.path;
     const Selection selection = selectionOf(layout, source.component, source.step);
-    const Geometry geometry{selection.dims, layout.spacing, layout.origin, layout.directions, layout.worldAxes};
+    const Geometry geometry{selection.dims,    layout.spacing,   layout.origin,
+                            layout.directions, layout.worldAxes, layout.lengthUnit};
     if (const std::string wrong = geometryProblem(geometry.spacing, geometry.origin); !wrong.empty())
         throw FileError(wrong, path, "correct the header, or write it in another unit");
     if (!(std::abs(glm::determinant(geometry.directions)) > 1e-6))

@@ -83,6 +83,7 @@ struct FileLayout : StoredValues {
     Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
     Mat3 directions{1}; ///< unit columns: where the axes of the grid point
     WorldAxes worldAxes = WorldAxes::File;
+    LengthUnit lengthUnit = LengthUnit::Unknown; ///< of spacing and origin
     std::optional<ValueScaling> scaling;
     std::optional<StepTimes> times; ///< of steps along one axis
     /// Where given: the values are in these, one after the other, as many in each.

@@ -75,20 +75,6 @@ std::vector<double> finiteNumbers(const std::string& text, const std::string& wh
     return numbers;
 }
 
-std::optional<double> millimetresPer(const std::string& unit) {
-    // The sign of micro is one of two letters.
-    static const std::map<std::string, double> kUnits{
-        {"km", 1e6},        {"kilometer", 1e6}, {"m", 1e3},           {"meter", 1e3}, {"cm", 10},
-        {"centimeter", 10}, {"mm", 1},          {"millimeter", 1},    {"um", 1e-3},   {"\u00b5m", 1e-3},
-        {"\u03bcm", 1e-3},  {"micron", 1e-3},   {"micrometer", 1e-3}, {"nm", 1e-6},   {"nanometer", 1e-6},
-        {"in", 25.4},       {"inch", 25.4},     {"inche", 25.4}};
-    std::string name = lowerCase(trimmed(unit));
-    if (name.size() > 2 && name.ends_with('s')) name.pop_back();
-    if (name.ends_with("metre")) name.replace(name.size() - 2, 2, "er");
-    const auto known = kUnits.find(name);
-    return known == kUnits.end() ? std::nullopt : std::optional(known->second);
-}
-
 void requireSpacing(double spacing, std::size_t axis, const std::string& text, const std::string& path) {
     if (!(spacing > 0) || !std::isfinite(spacing))
         throw FileError("the spacing of axis " + std::to_string(axis) + " is " + inQuotes(text) +

@@ -49,9 +49,6 @@ double numberIn(const std::string& word);
 /// The blank-separated numbers of `text`, which the file `path` calls `what`. Throws FileError unless all are finite.
 std::vector<double> finiteNumbers(const std::string& text, const std::string& what, const std::string& path);
 
-/// Millimetres in the unit of length that goes by this name or sign ("mm", "Microns", "inch"); empty: it is not known.
-std::optional<double> millimetresPer(const std::string& unit);
-
 /// Throws FileError unless `spacing`, which the header gives as `text`, is a distance between voxels.
 void requireSpacing(double spacing, std::size_t axis, const std::string& text, const std::string& path);
 

@@ -6,6 +6,7 @@
 
 #include "base/round_numbers.h"
 #include "volume/formats/writer.h"
+#include "volume/orientation.h"
 
 namespace pellucid {
 
@@ -27,7 +28,9 @@ std::string descriptionOf(const FramesToWrite& frames) {
         const std::string axis(1, "XYZ"[a]);
         sizes += attribute("Size" + axis, std::to_string(g.dims[a])) +
                  attribute("PhysicalSize" + axis, exactText(g.spacing[a]));
-        if (g.worldAxes == WorldAxes::Patient) sizes += attribute("PhysicalSize" + axis + "Unit", "mm");
+        const LengthUnit unit = unitOf(g); // without a word it would be micrometres
+        sizes +=
+            attribute("PhysicalSize" + axis + "Unit", unit == LengthUnit::Unknown ? "reference frame" : sign(unit));
     }
     if (frames.times && !timeUnit(frames.times->unit).empty())
         sizes += attribute("TimeIncrement", exactText(frames.times->width)) +

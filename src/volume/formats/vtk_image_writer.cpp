@@ -123,6 +123,8 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string& 
     std::vector<std::string> lost;
     if (frames.geometry.worldAxes == WorldAxes::Patient)
         lost.emplace_back("VTK image data does not say that places are a patient's");
+    if (frames.geometry.lengthUnit != LengthUnit::Unknown)
+        lost.emplace_back("VTK image data does not say in what unit lengths are");
     if (frames.times && !frames.times->unit.empty())
         lost.emplace_back("a collection of VTK does not say in what unit times are");
     return lost;

@@ -111,6 +111,7 @@ json jsonOf(const ReaderLayout& answer) {
               {"directions",
                {numbersOf(layout.directions[0]), numbersOf(layout.directions[1]), numbersOf(layout.directions[2])}},
               {"patient", layout.worldAxes == WorldAxes::Patient},
+              {"length_unit", plainSign(layout.lengthUnit)},
               {"array", layout.array},
               {"layers_at_once", answer.layersAtOnce},
               {"notices", layout.notices}};
@@ -139,6 +140,7 @@ ReaderLayout layoutIn(const json& message) {
     const std::vector<JsonValue> directions = value["directions"].items(3);
     for (int a = 0; a < 3; ++a) layout.directions[a] = vectorIn(directions[static_cast<std::size_t>(a)]);
     layout.worldAxes = value["patient"].boolean() ? WorldAxes::Patient : WorldAxes::File;
+    layout.lengthUnit = lengthUnitNamed(textIn(value["length_unit"])).value_or(LengthUnit::Unknown);
     layout.array = textIn(value["array"]);
     layout.notices = textsIn(value["notices"]);
     layout.bigEndian = std::endian::native == std::endian::big;
