@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/text.h"
 
@@ -9,27 +10,29 @@ namespace pellucid {
 
 namespace {
 
+/// A unit is `factor`·10^`exponent` millimetres.
 struct Known {
     LengthUnit unit;
-    double millimetres;
+    double factor;
+    int exponent;
     const char *sign, *plainSign, *name;
 };
 
-constexpr std::array kUnits{Known{LengthUnit::Unknown, 1, "units", "", ""},
-                            Known{LengthUnit::Femtometre, 1e-12, "fm", "fm", "femtometer"},
-                            Known{LengthUnit::Picometre, 1e-9, "pm", "pm", "picometer"},
-                            Known{LengthUnit::Angstrom, 1e-7, "\u00c5", "angstrom", "angstrom"},
-                            Known{LengthUnit::Nanometre, 1e-6, "nm", "nm", "nanometer"},
-                            Known{LengthUnit::Micrometre, 1e-3, "\u00b5m", "um", "micrometer"},
-                            Known{LengthUnit::Millimetre, 1, "mm", "mm", "millimeter"},
-                            Known{LengthUnit::Centimetre, 10, "cm", "cm", "centimeter"},
-                            Known{LengthUnit::Decimetre, 100, "dm", "dm", "decimeter"},
-                            Known{LengthUnit::Metre, 1e3, "m", "m", "meter"},
-                            Known{LengthUnit::Kilometre, 1e6, "km", "km", "kilometer"},
-                            Known{LengthUnit::Megametre, 1e9, "Mm", "Mm", "megameter"},
-                            Known{LengthUnit::Thou, 0.0254, "thou", "thou", "thou"},
-                            Known{LengthUnit::Inch, 25.4, "in", "in", "inch"},
-                            Known{LengthUnit::Foot, 304.8, "ft", "ft", "foot"}};
+constexpr std::array kUnits{Known{LengthUnit::Unknown, 1, 0, "units", "", ""},
+                            Known{LengthUnit::Femtometre, 1, -12, "fm", "fm", "femtometer"},
+                            Known{LengthUnit::Picometre, 1, -9, "pm", "pm", "picometer"},
+                            Known{LengthUnit::Angstrom, 1, -7, "\u00c5", "angstrom", "angstrom"},
+                            Known{LengthUnit::Nanometre, 1, -6, "nm", "nm", "nanometer"},
+                            Known{LengthUnit::Micrometre, 1, -3, "\u00b5m", "um", "micrometer"},
+                            Known{LengthUnit::Millimetre, 1, 0, "mm", "mm", "millimeter"},
+                            Known{LengthUnit::Centimetre, 1, 1, "cm", "cm", "centimeter"},
+                            Known{LengthUnit::Decimetre, 1, 2, "dm", "dm", "decimeter"},
+                            Known{LengthUnit::Metre, 1, 3, "m", "m", "meter"},
+                            Known{LengthUnit::Kilometre, 1, 6, "km", "km", "kilometer"},
+                            Known{LengthUnit::Megametre, 1, 9, "Mm", "Mm", "megameter"},
+                            Known{LengthUnit::Thou, 25.4, -3, "thou", "thou", "thou"},
+                            Known{LengthUnit::Inch, 25.4, 0, "in", "in", "inch"},
+                            Known{LengthUnit::Foot, 304.8, 0, "ft", "ft", "foot"}};
 
 const Known& known(LengthUnit unit) { return kUnits[static_cast<std::size_t>(unit)]; }
 static_assert(kUnits.back().unit == LengthUnit::Foot &&
@@ -65,7 +68,14 @@ std::optional<LengthUnit> lengthUnitNamed(const std::string& name) {
     return find([&](const Known& k) { return word == k.name; });
 }
 
-double millimetresIn(LengthUnit unit) { return known(unit).millimetres; }
+double converted(double length, LengthUnit from, LengthUnit to) {
+    if (from == to || from == LengthUnit::Unknown || to == LengthUnit::Unknown) return length;
+    const Known &a = known(from), &b = known(to);
+    // Powers of ten are exact upward.
+    const double power = std::pow(10.0, std::abs(a.exponent - b.exponent));
+    const double factor = a.factor == b.factor ? 1 : a.factor / b.factor;
+    return a.exponent >= b.exponent ? length * factor * power : length * factor / power;
+}
 const char* sign(LengthUnit unit) { return known(unit).sign; }
 const char* plainSign(LengthUnit unit) { return known(unit).plainSign; }
 const char* standardName(LengthUnit unit) { return known(unit).name; }

@@ -32,8 +32,8 @@ std::string withMicroSign(const std::string& unit);
 /// so.
 std::optional<LengthUnit> lengthUnitNamed(const std::string& name);
 
-/// Millimetres in a unit; 1 for Unknown.
-double millimetresIn(LengthUnit unit);
+/// A length in another unit, rounded once; as it is where either is Unknown.
+double converted(double length, LengthUnit from, LengthUnit to);
 
 /// "µm", in UTF-8; "units" for Unknown.
 const char* sign(LengthUnit unit);

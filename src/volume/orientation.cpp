@@ -43,7 +43,7 @@ const char* lengthUnit(const Geometry& geometry) { return sign(unitOf(geometry))
 Geometry inUnit(const Geometry& geometry, LengthUnit unit) {
     const LengthUnit own = unitOf(geometry);
     if (own == unit || own == LengthUnit::Unknown || unit == LengthUnit::Unknown) return geometry;
-    const double scale = millimetresIn(own) / millimetresIn(unit);
+    const double scale = converted(1, own, unit);
     Geometry scaled = geometry;
     scaled.spacing *= scale;
     scaled.origin *= scale;

@@ -316,7 +316,10 @@ TEST_CASE("distances beside an HDF5 array are taken, slowest axis first", "[arra
             file.array("/v", {2, 3, 4}, counted<std::int16_t>(24));
             file.numbers("/v", name, {3, 2, 0.5});
         }
-        CHECK(loadVolume(at(folder.path("v.h5"))).geometry().spacing == Vec3(0.5, 2, 3));
+        const Volume volume = loadVolume(at(folder.path("v.h5")));
+        CHECK(volume.geometry().spacing == Vec3(0.5, 2, 3));
+        const bool isInMicrons = std::string(name) == "element_size_um";
+        CHECK(volume.geometry().lengthUnit == (isInMicrons ? LengthUnit::Micrometre : LengthUnit::Unknown));
     }
 }
 
@@ -555,6 +558,7 @@ TEST_CASE("lengths get one unit, and unequal spacing is told of", "[arrays]") {
     };
     const Volume metres = load("m", {0, 1, 2});
     CHECK(metres.geometry().spacing == Vec3(2, 1, 0.5));
+    CHECK(metres.geometry().lengthUnit == LengthUnit::Kilometre);
     CHECK(hasNotice(metres, "lengths are given in m and km: shown in km"));
     const Volume unequal = load("km", {0, 1, 4});
     CHECK(unequal.geometry().spacing == Vec3(2, 2, 500));

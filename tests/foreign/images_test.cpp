@@ -142,6 +142,7 @@ TEST_CASE("ImageJ says how pages follow each other and how far pixels are apart"
             source.component = channel;
             const Volume volume = loadVolume(source);
             CHECK(volume.geometry().spacing == Vec3(0.25, 0.25, 2.5));
+            CHECK(volume.geometry().lengthUnit == LengthUnit::Micrometre);
             for (int z = 0; z < 3; ++z)
                 CHECK(volume.value(static_cast<std::size_t>(6 * z)) == 100 * (channel + 2 * (z + 3 * step)));
         }
@@ -168,7 +169,8 @@ TEST_CASE("OME-XML says how pages follow each other and how far pixels are apart
     const Volume volume = loadVolume(source);
     CHECK(volume.dims() == Int3(3, 2, 2));
     CHECK(volume.geometry().spacing == Vec3(0.5, 0.5, 1.5));
-    CHECK(volume.value(0) == 200); // slices first, then channels
+    CHECK(volume.geometry().lengthUnit == LengthUnit::Micrometre); // which OME means where it names none
+    CHECK(volume.value(0) == 200);                                 // slices first, then channels
     CHECK(volume.value(6) == 300);
     // Orders that are none are read as this one.
     for (const char* order : {"XYZZZ", "XYZC", "CTXYZ", ""}) {
@@ -222,6 +224,7 @@ TEST_CASE("distances and times of ImageJ are converted to one unit", "[images]")
     CHECK(load("unit=\\u00B5m\nyunit=mm\nzunit=nm\nspacing=500\n").geometry().spacing == Vec3(0.25, 250, 0.5));
     const Volume strange = load("unit=micron\nzunit=furlong\nspacing=2\n");
     CHECK(strange.geometry().spacing == Vec3(0.25, 0.25, 2));
+    CHECK(strange.geometry().lengthUnit == LengthUnit::Unknown);
     CHECK(hasNotice(strange, "'furlong'"));
     const Volume without = load("unit=um\n"); // ImageJ writes no spacing of 1
     CHECK(without.geometry().spacing == Vec3(0.25, 0.25, 1));
@@ -418,6 +421,7 @@ TEST_CASE("times and distances of OME-XML are converted, and what is not known i
     CHECK(hasNotice(flat, "how far voxels are apart along z"));
     const Volume full = loadVolume(file(stack + "PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"2\"")); // micrometres
     CHECK(full.geometry().spacing == Vec3(65, 500, 2000));
+    CHECK(full.geometry().lengthUnit == LengthUnit::Nanometre);
     CHECK(full.notices.empty());
     const Volume pixels = loadVolume(file(stack + "PhysicalSizeY=\"65\" PhysicalSizeYUnit=\"nm\" PhysicalSizeZ=\"2\" "
                                                   "PhysicalSizeZUnit=\"pixel\""));
@@ -551,6 +555,7 @@ TEST_CASE("pictures of a folder are as far apart as they say", "[images]") {
     // 500 nm, 0.25 µm and 2 µm.
     const std::string known = omeText(" PhysicalSizeZ=\"2\"");
     const Volume micro = load({{known, 0}, {known, 0}});
+    CHECK(micro.geometry().lengthUnit == LengthUnit::Nanometre);
     CHECK(micro.geometry().spacing.x == 500);
     CHECK(micro.geometry().spacing.y == Approx(250));
     CHECK(micro.geometry().spacing.z == Approx(2000));

@@ -310,6 +310,7 @@ TEST_CASE("OME-Zarr says where voxels lie", "[zarr]") {
     CHECK(volume.geometry().spacing == Vec3(0.5, 2, 4));
     CHECK(volume.geometry().origin == Vec3(10, 20, 30));
     CHECK(volume.geometry().worldAxes == WorldAxes::File);
+    CHECK(volume.geometry().lengthUnit == LengthUnit::Micrometre);
     // In the unit of the first axis that has one.
     json other = image(json::array({scale}), "micrometer");
     other["multiscales"][0]["axes"][0]["unit"] = "nanometer";

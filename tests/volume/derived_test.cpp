@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "volume/noise.h"
+#include "volume/orientation.h"
 
 using namespace pellucid;
 using Catch::Matchers::Contains;
@@ -248,6 +249,17 @@ TEST_CASE("a volume is resampled where its voxels lie in the world", "[derived]"
                 INFO(at.x << ' ' << at.y << ' ' << at.z);
                 CHECK(out.value(index) == Approx(at.x + 10 * at.y).margin(1e-5));
             }
-    fine.origin.x = -2; // the columns of the last ones lie beyond the box
+    // The same grid in micrometres, of data in millimetres.
+    Geometry inMm = coarse, inMicrons = inUnit(fine, LengthUnit::Micrometre);
+    inMm.lengthUnit = LengthUnit::Millimetre;
+    CHECK(inMicrons.spacing == fine.spacing); // of no unit: nothing to convert
+    inMicrons.lengthUnit = LengthUnit::Micrometre;
+    inMicrons.spacing *= 1000;
+    inMicrons.origin *= 1000;
+    const Volume same = resampledTo(volume.withGeometry(inMm), inMicrons);
+    for (std::size_t i = 0; i < same.size(); ++i) CHECK(same.value(i) == Approx(out.value(i)).margin(1e-5));
+    CHECK(onSameGrid(inUnit(inMicrons, LengthUnit::Millimetre), inMicrons));
+    CHECK_FALSE(onSameGrid(inMicrons, fine)); // whose unit is not known
+    fine.origin.x = -2;                       // the columns of the last ones lie beyond the box
     CHECK(resampledTo(volume, fine).invalidCount() > 0);
 }

@@ -819,7 +819,9 @@ TEST_CASE("headers say in which unit lengths are", "[formats]") {
     for (const std::string space : {"space dimension: 3", "space: 3D-right-handed"}) {
         INFO(space);
         const std::string grid = space + "\nspace directions: (2,0,0) (0,2,0) (0,0,4)\nspace units: ";
-        CHECK(load(plain(grid + R"("um" "microns" "um")")).geometry().spacing == Vec3(2, 2, 4));
+        const Volume inMicrons = load(plain(grid + R"("um" "microns" "um")"));
+        CHECK(inMicrons.geometry().spacing == Vec3(2, 2, 4));
+        CHECK(inMicrons.geometry().lengthUnit == LengthUnit::Micrometre);
         CHECK_THROWS_WITH(load(plain(grid + R"("mm" "mm" "cm")")), Contains("different units, 'mm' and 'cm'"));
     }
     CHECK_THROWS_WITH(load(plain(R"(spacings: 2 2 4
@@ -828,6 +830,7 @@ units: "mm" "mm" "cm")")),
     const Volume mixed = load(plain(R"(spacings: 2 2 4
 units: "mm" "mm" "s")"));
     CHECK(mixed.geometry().spacing == Vec3(2, 2, 4));
+    CHECK(mixed.geometry().lengthUnit == LengthUnit::Unknown);
     CHECK(hasNotice(mixed, "different units, 'mm' and 's': their numbers are taken as they are"));
     CHECK(load(plain("spacings: 2 2 4\nunits: \"um\" \"\" \"???\"")).notices.empty());
     const auto mha = [&](const std::string& fields) {
@@ -839,8 +842,9 @@ units: "mm" "mm" "s")"));
     CHECK(micro.geometry().spacing == Vec3(2e-3, 2e-3, 4e-3));
     CHECK(micro.geometry().origin == Vec3(1e-3, 0, 3e-3));
     const Volume ofNobody = load(mha("DistanceUnits = um\n"));
-    CHECK(ofNobody.geometry().spacing == Vec3(2e-3, 2e-3, 4e-3));
-    CHECK(hasNotice(ofNobody, "the header gives lengths in um: shown in mm"));
+    CHECK(ofNobody.geometry().spacing == Vec3(2, 2, 4));
+    CHECK(ofNobody.geometry().lengthUnit == LengthUnit::Micrometre);
+    CHECK(ofNobody.notices.empty());
     CHECK(load(mha("DistanceUnits = mm\n")).notices.empty());
     CHECK(load(mha("DistanceUnits = ?\n")).geometry().spacing == Vec3(2, 2, 4));
     for (const char* anatomy : {"", "AnatomicalOrientation = RAI\n"})

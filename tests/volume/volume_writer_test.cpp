@@ -12,6 +12,7 @@
 #include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
+#include "volume/orientation.h"
 #include "volume/time_series.h"
 #include "volume/volume_writer.h"
 
@@ -87,6 +88,44 @@ TEMPLATE_TEST_CASE("a volume that is written is read back the same", "[writer]",
             CHECK(sameWorld == (isNifti ? axes == WorldAxes::Patient : !isOfFile || axes == WorldAxes::File));
             CHECK(lost.empty() == (sameWorld && !isTiff && !isZarr));
         }
+}
+
+TEST_CASE("lengths keep their unit, or it is said that they do not", "[writer]") {
+    const TempFolder folder;
+    for (const LengthUnit unit : {LengthUnit::Unknown, LengthUnit::Nanometre, LengthUnit::Micrometre,
+                                  LengthUnit::Millimetre, LengthUnit::Metre, LengthUnit::Inch})
+        for (const std::string& suffix : kSuffixes) {
+            CAPTURE(suffix, sign(unit));
+            Geometry g;
+            g.dims = {3, 4, 5};
+            g.spacing = {0.5, 0.25, 2};
+            g.lengthUnit = unit;
+            const std::string path = folder.path("a" + suffix);
+            const std::vector<std::string> lost = writeVolume(volumeOf<std::uint8_t>(g), path);
+            const Volume read = load(path);
+            CHECK(read.geometry().spacing == g.spacing);
+            const bool isKept = read.geometry().lengthUnit == unit;
+            CHECK(lost.empty() == isKept);
+            const bool hasCode = unit == LengthUnit::Micrometre || unit == LengthUnit::Millimetre ||
+                                 unit == LengthUnit::Metre || unit == LengthUnit::Unknown;
+            CHECK(isKept == (suffix == ".vti" ? unit == LengthUnit::Unknown : hasCode || !suffix.starts_with(".nii")));
+            if (!isKept) CHECK_THAT(lost.at(0), Contains("unit"));
+        }
+}
+
+TEST_CASE("a patient's lengths in micrometres are read in millimetres", "[writer]") {
+    const TempFolder folder;
+    Geometry g = oblique(WorldAxes::Patient);
+    g.lengthUnit = LengthUnit::Micrometre; // as where a file without a patient is given axes of one
+    for (const char* suffix : {".nrrd", ".mha", ".nii"}) {
+        CAPTURE(suffix);
+        const std::string path = folder.path(std::string("a") + suffix);
+        CHECK(writeVolume(volumeOf<std::uint8_t>(g), path).empty());
+        const Geometry read = load(path).geometry();
+        CHECK(unitOf(read) == LengthUnit::Millimetre);
+        CHECK(glm::length(1000.0 * read.spacing - g.spacing) < 1e-6);
+        CHECK(glm::length(1000.0 * read.origin - g.origin) < 1e-5);
+    }
 }
 
 TEST_CASE("a plain grid has no orientation in NIfTI", "[writer]") {

@@ -236,9 +236,9 @@ LengthUnit unifyUnits(std::vector<Axis*>& places, std::vector<std::string>& noti
     const LengthUnit unit = *lengthUnitNamed(name);
     for (Axis* axis : places) {
         if (axis->unit.empty()) continue;
-        const double factor = millimetresIn(*lengthUnitNamed(axis->unit)) / millimetresIn(unit);
-        axis->step *= factor;
-        axis->first *= factor;
+        const LengthUnit own = *lengthUnitNamed(axis->unit);
+        axis->step = converted(axis->step, own, unit);
+        axis->first = converted(axis->first, own, unit);
     }
     notices.push_back("lengths are given in " + joined(units, " and ") + ": shown in " + name);
     return unit;

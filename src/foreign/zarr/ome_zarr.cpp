@@ -346,15 +346,15 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
         if (at == std::string::npos) continue;
         if (unit.empty()) unit = axes.units[at];
         const auto own = lengthUnitNamed(axes.units[at]), first = lengthUnitNamed(unit);
-        const double scale = own && first ? millimetresIn(*own) / millimetresIn(*first) : 1; // in the unit of x
         if (!axes.units[at].empty() && axes.units[at] != unit && !(own && first)) {
             isOneUnit = false;
             image.notices.push_back("the axes have different units (" + printable(unit) + ", " +
                                     printable(axes.units[at]) + "): their numbers are taken as they are");
         }
-        image.spacing[a] = placements.front().steps[at] * scale;
+        const auto inFirst = [&](double length) { return own && first ? converted(length, *own, *first) : length; };
+        image.spacing[a] = inFirst(placements.front().steps[at]);
         for (std::size_t level = 0; level < image.levels.size(); ++level)
-            (*image.origins[level])[a] = placements[level].offsets[at] * scale;
+            (*image.origins[level])[a] = inFirst(placements[level].offsets[at]);
     }
     if (isOneUnit) image.lengthUnit = lengthUnitNamed(unit).value_or(LengthUnit::Unknown);
     for (std::size_t level = 1; level < image.levels.size(); ++level)

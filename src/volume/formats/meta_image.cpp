@@ -228,8 +228,9 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
     if (layout.worldAxes == WorldAxes::File) { // where there is no patient, lengths stay in the unit of the file
         layout.lengthUnit = ofFile;
     } else {
-        layout.spacing *= millimetresIn(ofFile);
-        layout.origin *= millimetresIn(ofFile);
+        const double millimetres = converted(1, ofFile, LengthUnit::Millimetre);
+        layout.spacing *= millimetres;
+        layout.origin *= millimetres;
     }
     layout.scaling = scalingIn(header, layout.notices);
     layout.bigEndian = isBigEndian(header);

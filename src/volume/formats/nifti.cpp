@@ -325,7 +325,7 @@ void placeGrid(FileLayout& layout, const NiftiHeader& header) {
     }
     if (const std::optional<Placement> placement = placementIn(header, layout.spacing, layout.notices)) {
         layout.worldAxes = WorldAxes::Patient;
-        const double millimetres = millimetresIn(ofFile);
+        const double millimetres = converted(1, ofFile, LengthUnit::Millimetre);
         const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
         for (int a = 0; a < 3; ++a) {
             layout.origin[a] = placement->origin[a] == 0 ? 0 : flip[a] * placement->origin[a] * millimetres;

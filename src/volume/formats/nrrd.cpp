@@ -288,7 +288,7 @@ void placeGrid(FileLayout& layout, const TextHeader& header) {
     // Where there is no patient, lengths stay in the unit of the file.
     const LengthUnit ofFile = lengthUnitIn(header, inSpace, patient.has_value(), layout.notices);
     if (!patient) layout.lengthUnit = ofFile;
-    const double unit = patient ? millimetresIn(ofFile) : 1;
+    const double unit = patient ? converted(1, ofFile, LengthUnit::Millimetre) : 1;
     for (std::size_t i = 0; i < inSpace.size(); ++i) {
         const std::size_t a = inSpace[i];
         double& spacing = layout.spacing[static_cast<int>(i)];
