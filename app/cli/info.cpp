@@ -58,7 +58,7 @@ Json jsonOf(const Volume& v) {
             {"spacing", jsonFromVector(v.geometry().spacing)},
             {"origin", jsonFromVector(v.geometry().origin)},
             {"frame", v.geometry().worldAxes == WorldAxes::Patient ? "patient" : "file"},
-            {"length_unit", plainSign(unitOf(v.geometry()))},
+            {"unit", lengthUnit(v.geometry())},
             {"directions", directions(v.geometry())},
             {"range", jsonFromRange(v.range())},
             {"data_range", jsonFromRange(v.dataRange())},

@@ -32,7 +32,7 @@ std::string withMicroSign(const std::string& unit);
 /// so.
 std::optional<LengthUnit> lengthUnitNamed(const std::string& name);
 
-/// A length in another unit, rounded once; as it is where either is Unknown.
+/// A length in another unit, exact but for rounding; as it is where either is Unknown.
 double converted(double length, LengthUnit from, LengthUnit to);
 
 /// "µm", in UTF-8; "units" for Unknown.

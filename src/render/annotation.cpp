@@ -387,12 +387,14 @@ private:
         one[axis] = 1;
         return inAxes(m_in.axes, m_in.geometry, one)[axis] < 0;
     }
-    /// "R→L  mm": where coordinates grow.
+    /// "R→L  mm": where coordinates grow, and in which unit, where that is known.
     std::string captionOf(int axis) const {
         if (m_box) return m_box->captions[static_cast<std::size_t>(axis)];
-        if (m_in.geometry.worldAxes != WorldAxes::Patient) return std::string(1, "xyz"[axis]);
+        const bool hasUnit = unitOf(m_in.geometry) != LengthUnit::Unknown;
+        const std::string unit = hasUnit ? std::string("  ") + lengthUnit(m_in.geometry) : "";
+        if (m_in.geometry.worldAxes != WorldAxes::Patient) return "xyz"[axis] + unit;
         const bool against = isAgainstWorld(axis);
-        return std::string(1, patientLetter(axis, against)) + "→" + patientLetter(axis, !against) + "  mm";
+        return std::string(1, patientLetter(axis, against)) + "→" + patientLetter(axis, !against) + unit;
     }
 
     void addTicks(int axis, const Vec3& lo, const Vec3& hi, const Vec2& middle) {

@@ -19,6 +19,7 @@
 #include "session/caption.h"
 #include "session/session_json.h"
 #include "tf/shown_tf.h"
+#include "volume/orientation.h"
 
 namespace pellucid {
 
@@ -49,7 +50,7 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest&
         {"Volume", volume.title},
         {"Voxels", std::to_string(d.x) + " × " + std::to_string(d.y) + " × " + std::to_string(d.z) + ", " +
                        name(volume.sampleType())},
-        {"Spacing", lengths(volume.geometry().spacing)},
+        {"Spacing", lengths(volume.geometry().spacing) + " " + lengthUnit(volume.geometry())},
         {"Values of intensity 0 and 1",
          shortText(volume.range().lo) + " to " + shortText(volume.range().hi) + (unit.empty() ? "" : " " + unit)},
         {"View", shortText(view.azimuth) + "°, " + shortText(view.elevation) + "°, zoom " + shortText(view.zoom) +

@@ -5,6 +5,7 @@
 #include "session/ground_file.h"
 #include "session/overlay_file.h"
 #include "tf/hsb_colors.h"
+#include "volume/orientation.h"
 
 namespace pellucid {
 
@@ -208,8 +209,9 @@ std::shared_ptr<const Volume> channelOf(Scene& scene, SeriesFinder& finder, cons
     // Published, each frame is normalised by itself.
     if (!window && scene.session.measure->profile == Profile::Published && !volume->isConstant())
         window = volume->dataRange();
-    if (!onSameGrid(volume->geometry(), scene.volume->geometry()))
-        volume = std::make_shared<const Volume>(resampledTo(*volume, scene.volume->geometry(), job));
+    const Geometry& grid = scene.volume->geometry();
+    if (!onSameGrid(inUnit(volume->geometry(), unitOf(grid)), grid))
+        volume = std::make_shared<const Volume>(resampledTo(*volume, grid, job));
     if (!window) window = series->range(job);
     return throughWindow(volume, *window);
 }
@@ -256,13 +258,23 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
     scene.session.hsb.edit([&](HsbMapping& mapping) { mapping.found = found; });
 }
 
+namespace {
+
+/// Whether what lies in the world of one lies there in the other.
+bool isSameWorld(const Scene& a, const Scene& b) {
+    return onSameGrid(a.volume->geometry(), b.volume->geometry()) &&
+           unitOf(a.volume->geometry()) == unitOf(b.volume->geometry());
+}
+
+} // namespace
+
 void resolveGround(Scene& scene, const Scene& basis, const JobControl& job) {
     const GroundView& view = *scene.session.ground;
     if (view.path.empty() || !view.shown) return;
     GroundView look = *basis.session.ground; // of the same heights
     look.colorMap = view.colorMap;
     look.relief = view.relief;
-    if (basis.ground && look == view && onSameGrid(basis.volume->geometry(), scene.volume->geometry())) {
+    if (basis.ground && look == view && isSameWorld(basis, scene)) {
         scene.ground = basis.ground;
         if (view == *basis.session.ground) return;
         Ground ground = *basis.ground;
@@ -277,8 +289,7 @@ void resolveOverlay(Scene& scene, const Scene& basis, const JobControl& job) {
     const OverlayView& view = *scene.session.overlay;
     if (!view.isDrawn()) return;
     const Geometry& first = scene.volume->geometry();
-    const bool sameVoxels =
-        basis.overlay && basis.session.overlay->source == view.source && onSameGrid(basis.volume->geometry(), first);
+    const bool sameVoxels = basis.overlay && basis.session.overlay->source == view.source && isSameWorld(basis, scene);
     if (sameVoxels && view == *basis.session.overlay) {
         scene.overlay = basis.overlay;
         return;

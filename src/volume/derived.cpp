@@ -287,8 +287,7 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
 
 // ---- grids
 
-bool onSameGrid(const Geometry& a, const Geometry& other) {
-    const Geometry b = inUnit(other, unitOf(a));
+bool onSameGrid(const Geometry& a, const Geometry& b) {
     const auto near = [](const Vec3& p, const Vec3& q, double scale) {
         return std::abs(p.x - q.x) + std::abs(p.y - q.y) + std::abs(p.z - q.z) <= 1e-6 * scale;
     };

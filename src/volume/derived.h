@@ -48,7 +48,7 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
 /// Trilinear samples of `volume` at the voxels of `grid`, in the world (where both say in which units, these are
 /// converted); invalid beyond its box. Float.
 Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl& job = {});
-/// Whether that would change nothing but the type.
-bool onSameGrid(const Geometry& a, const Geometry& other);
+/// Whether that would change nothing but the type, lengths being in one unit.
+bool onSameGrid(const Geometry& a, const Geometry& b);
 
 } // namespace pellucid

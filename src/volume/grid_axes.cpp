@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "base/error.h"
+#include "volume/orientation.h"
 
 namespace pellucid {
 
@@ -128,6 +129,7 @@ Volume withAxes(const Volume& volume, const std::optional<GridAxes>& axes) {
     Geometry geometry = volume.inFile.value_or(now);
     if (axes) {
         geometry.directions = directionsOf(*axes);
+        if (!axes->patient) geometry.lengthUnit = unitOf(geometry); // millimetres stay millimetres
         geometry.worldAxes = axes->patient ? WorldAxes::Patient : WorldAxes::File;
         const Vec3 middle = middleOfData(volume);
         geometry.origin += now.worldFromVoxel(middle) - geometry.worldFromVoxel(middle);

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 #include "volume/derived.h"
+#include "volume/orientation.h"
 #include "volume/volume_part.h"
 #include "volume/voxel_loops.h"
 
@@ -194,6 +195,9 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
             if (!m_geometry) m_geometry = volume->geometry();
             grid = m_geometry;
         }
+        if (const Geometry inSame = inUnit(volume->geometry(), unitOf(*grid));
+            inSame.lengthUnit != volume->geometry().lengthUnit)
+            *volume = volume->withGeometry(inSame);
         if (!onSameGrid(*grid, volume->geometry()))
             throw FileError("its grid (" + dimsText(volume->dims()) + ") is not that of the series (" +
                                 dimsText(grid->dims) + ")",

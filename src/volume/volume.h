@@ -53,7 +53,7 @@ struct Geometry {
     Vec3 origin{0, 0, 0};
     Mat3 directions{1}; ///< unit columns: where the axes i, j, k point in the world; need not be at right angles
     WorldAxes worldAxes = WorldAxes::File;
-    LengthUnit lengthUnit = LengthUnit::Unknown; ///< as the file says; see unitOf()
+    LengthUnit lengthUnit = LengthUnit::Unknown; ///< see unitOf(): a patient's are millimetres without a word
     /// World units; 0: the smallest spacing. A coarser copy of a volume keeps the length of the volume that it was made
     /// from, so that opacities and saliency mean the same in both.
     double referenceLength = 0;

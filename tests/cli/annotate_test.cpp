@@ -136,13 +136,13 @@ TEST_CASE("info says how the volume lies in the world", "[cli][annotate]") {
     writeHalf(w, "ras.nrrd", "right-anterior-superior");
     const json j = w.json({"info", "ras.nrrd"});
     CHECK(j["frame"] == "patient");
-    CHECK(j["length_unit"] == "mm");
+    CHECK(j["unit"] == "mm");
     CHECK(j["directions"] == json::parse("[[-1.0,0.0,0.0],[0.0,-1.0,0.0],[0.0,0.0,1.0]]"));
     CHECK(w.run({"info", "ras.nrrd"}).out.find("L→R, P→A, I→S") != std::string::npos);
     CHECK(w.json({"info", "sample:shells", "--size", "8"})["frame"] == "file");
     w.write("cells.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 2 2 4\n"
                           "units: \"um\" \"um\" \"um\"\nencoding: raw\n\n01234567");
-    CHECK(w.json({"info", "cells.nrrd"})["length_unit"] == "um");
+    CHECK(w.json({"info", "cells.nrrd"})["unit"] == "µm");
     CHECK_THAT(w.run({"info", "cells.nrrd"}).out, Catch::Contains("2 x 2 x 4 µm"));
-    CHECK(w.json({"info", "sample:shells", "--size", "8"})["length_unit"] == "");
+    CHECK(w.json({"info", "sample:shells", "--size", "8"})["unit"] == "units");
 }

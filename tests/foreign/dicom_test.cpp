@@ -953,8 +953,9 @@ TEST_CASE("what happens to the process that reads is told in a sentence", "[dico
     // More than any memory has: before anything is allocated.
     with("read line; echo '{\"layout\":{\"axes\":[{\"size\":2000000000,\"components\":false,\"time\":false},"
          "{\"size\":1000000000,\"components\":false,\"time\":false}],\"type\":0,\"spacing\":[1,1,1],\"origin\":[0,0,0],"
-         "\"directions\":[[1,0,0],[0,1,0],[0,0,1]],\"patient\":false,\"array\":\"\",\"layers_at_once\":1,\"notices\":[]"
-         "}}'; sleep 100");
+         "\"directions\":[[1,0,0],[0,1,0],[0,0,1]],\"patient\":false,\"length_unit\":\"\",\"array\":\"\",\"layers_at_"
+         "once\":1,"
+         "\"notices\":[]}}'; sleep 100");
     CHECK_THROWS_WITH(loadVolume(at(path)), Contains("would take hours"));
     setReaderProgram(folder.path("none"));
     CHECK_THROWS_WITH(loadVolume(at(path)), Contains("cannot be started"));

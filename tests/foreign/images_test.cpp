@@ -538,6 +538,10 @@ TEST_CASE("pictures of a folder are as far apart as they say", "[images]") {
     const Volume apart = load({{imageJ + "spacing=2\n", 4}, {imageJ + "spacing=3\n", 4}});
     CHECK(apart.geometry().spacing == Vec3(0.25, 0.25, 2));
     CHECK(hasNotice(apart, "s1.tif says another distance"));
+    // 4 pixels to a millimetre, and 4000 to a metre.
+    CHECK(hasNotice(load({{imageJ, 4}, {"ImageJ=1.53t\nunit=mm\n", 4}}), "s1.tif says another distance"));
+    CHECK_FALSE(
+        hasNotice(load({{"ImageJ=1.53t\nunit=mm\n", 4}, {"ImageJ=1.53t\nunit=m\n", 4000}}), "distance between pixels"));
     // Resolution alone is that of a print.
     CHECK(load({{"", 72}, {"", 72}}).geometry().spacing == Vec3(1));
     // Values of 0.5 v + 10, where all files say so.
@@ -711,12 +715,13 @@ TEST_CASE("pixels that stand in a TIFF file as they are are read there, without 
     SECTION("what a reader says of the place is held against the file") {
         const std::string path = folder.write("a.tif", tiffFile(pages(4), {false, true}));
         const auto say = [&](const std::string& start) {
-            folder.write("reader.sh",
-                         "#!/bin/sh\nread line; echo '{\"layout\":{\"axes\":[{\"size\":3,\"components\":false,\"time\":"
-                         "false},{\"size\":8,\"components\":false,\"time\":false}],\"type\":2,\"spacing\":[1,1,1],"
-                         "\"origin\":[0,0,0],\"directions\":[[1,0,0],[0,1,0],[0,0,1]],\"patient\":false,\"array\":\"\","
-                         "\"layers_at_once\":1,\"notices\":[],\"in_file\":{\"starts\":[" +
-                             start + "],\"big_endian\":false}}}'; sleep 100\n");
+            folder.write(
+                "reader.sh",
+                "#!/bin/sh\nread line; echo '{\"layout\":{\"axes\":[{\"size\":3,\"components\":false,\"time\":"
+                "false},{\"size\":8,\"components\":false,\"time\":false}],\"type\":2,\"spacing\":[1,1,1],"
+                "\"origin\":[0,0,0],\"directions\":[[1,0,0],[0,1,0],[0,0,1]],\"patient\":false,\"length_unit\":\"\","
+                "\"array\":\"\",\"layers_at_once\":1,\"notices\":[],\"in_file\":{\"starts\":[" +
+                    start + "],\"big_endian\":false}}}'; sleep 100\n");
         };
         say("8");
         CHECK(loadVolume(at(path)).value(23) == 305);  // nobody asks the reader for it

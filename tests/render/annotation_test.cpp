@@ -217,6 +217,16 @@ TEST_CASE("axes have the world's coordinates where they are", "[annotation]") {
     CHECK_NOTHROW(middleOf("R→L  mm"));
     CHECK_NOTHROW(middleOf("I→S  mm"));
     for (const Mark& mark : texts) CHECK(mark.text != "A→P  mm"); // seen end-on
+    const auto captionsIn = [&](WorldAxes axes, LengthUnit unit) {
+        input.geometry.worldAxes = axes;
+        input.geometry.lengthUnit = unit;
+        std::set<std::string> captions;
+        for (const Mark& mark : textsOf(annotationMarks(input), AnnotationPart::Axes)) captions.insert(mark.text);
+        return captions;
+    };
+    CHECK(captionsIn(WorldAxes::Patient, LengthUnit::Micrometre).contains("R→L  µm"));
+    CHECK(captionsIn(WorldAxes::File, LengthUnit::Micrometre).contains("x  µm"));
+    CHECK(captionsIn(WorldAxes::File, LengthUnit::Unknown).contains("x"));
 }
 
 TEST_CASE("nothing overlaps and nothing is lost, from 300x200 to 4K", "[annotation]") {

@@ -80,6 +80,26 @@ TEST_CASE("a session's overlay is in its pictures and slices, and in no figure",
     CHECK(measureInput(alone) == measureInput(scene));
 }
 
+TEST_CASE("an overlay in another unit lies where it would lie in that of the volume", "[overlay]") {
+    const Files files;
+    Geometry cells{{12, 12, 12}, Vec3(2), Vec3(-11)}, map{{7, 7, 7}, Vec3(3000), Vec3(-9000)};
+    cells.lengthUnit = LengthUnit::Micrometre;
+    map.lengthUnit = LengthUnit::Nanometre;
+    const auto ball = [](const Vec3& w) { return std::max(0.0, 12 - glm::length(w)); };
+    const std::string volume = files.write("cells.nrrd", cells, ball);
+    const Session session = sessionWith(volume, files.write("map.nrrd", map, [](const Vec3& w) { return w.x / 1500; }));
+    const Scene scene = resolve(session, {});
+    REQUIRE(scene.overlay);
+    CHECK(scene.overlay->valueAt({3, 1, 1}).value() == Approx(2)); // 3 µm are 3000 nm
+    CHECK(glm::length(scene.overlay->geometry.spacing - Vec3(3)) < 1e-12);
+    // The same numbers in another unit are another place.
+    cells.lengthUnit = LengthUnit::Nanometre;
+    cells.spacing *= 1000;
+    cells.origin *= 1000;
+    Session other = sessionWith(files.write("fine.nrrd", cells, ball), files.folder.path("map.nrrd"));
+    CHECK(resolve(other, scene).overlay->geometry.spacing == Vec3(3000));
+}
+
 TEST_CASE("voxels of an overlay are read once, and its look made anew", "[overlay]") {
     const Files files;
     const Scene scene = resolve(sessionWith(files.anatomy(), files.map()), {});

@@ -103,3 +103,16 @@ TEST_CASE("parts and coarser copies of turned data lie where they lay in the who
     // Voxel 1 along each axis is the mean of voxels 2 and 3 of the part, 5 and 6 of the whole along i.
     checkNear(coarse.worldFromVoxel({1, 1, 1}), whole.worldFromVoxel({5.5, 4.5, 7.5}));
 }
+
+TEST_CASE("lengths of a patient stay millimetres where the axes are called the file's", "[orientation]") {
+    Geometry g;
+    g.dims = {2, 2, 2};
+    g.worldAxes = WorldAxes::Patient;
+    const Volume volume(g, SampleArray<float>(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
+    const Volume other = withAxes(volume, parseGridAxes("+x+y+z"));
+    CHECK(other.geometry().worldAxes == WorldAxes::File);
+    CHECK(unitOf(other.geometry()) == LengthUnit::Millimetre);
+    CHECK(unitOf(withAxes(other, std::nullopt).geometry()) == LengthUnit::Millimetre);
+    g.worldAxes = WorldAxes::File;
+    CHECK(unitOf(withAxes(volume.withGeometry(g), parseGridAxes("+y+x-z")).geometry()) == LengthUnit::Unknown);
+}

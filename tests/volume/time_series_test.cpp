@@ -149,6 +149,19 @@ TEST_CASE("a frame that comes back is sound again, one of another grid is refuse
     CHECK(series.heldBytes() == kRampBytes);
 }
 
+TEST_CASE("frames in other units lie where the first one lies", "[time-series]") {
+    TimeSeries series(listingOf(3), [](int f, const JobControl&) {
+        Geometry g{{10, 10, 10}};
+        g.lengthUnit = f == 0 ? LengthUnit::Micrometre : f == 1 ? LengthUnit::Nanometre : LengthUnit::Unknown;
+        if (f == 1) g.spacing *= 1000;
+        return Volume(g, std::vector<float>(1000, 1.0f));
+    });
+    const Geometry first = series.load(0)->geometry();
+    CHECK(series.load(1)->geometry().spacing == first.spacing);
+    CHECK(series.load(1)->geometry().lengthUnit == LengthUnit::Micrometre);
+    CHECK(series.load(2)->geometry().spacing == first.spacing); // a unit is assumed for nobody
+}
+
 TEST_CASE("a frame tells which file is to blame where it is not the frame's own", "[time-series]") {
     const TempFolder folder;
     for (const char* name : {"a", "b", "c"})

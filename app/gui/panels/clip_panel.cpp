@@ -140,7 +140,7 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
         auto* box =
             named(new QDoubleSpinBox, QStringLiteral("clipPlane%1%2").arg(index + 1).arg(names[number]),
                   number < 3 ? tr("%1 of the plane's normal, which points to what is cut away").arg(kAxes[number])
-                             : tr("Where the plane lies along its normal n, in world units: points p with "
+                             : tr("Where the plane lies along its normal n, in the unit of the volume: points p with "
                                   "n·p at most this are left, as --clip NX,NY,NZ,D says it"));
         withLook(box, {-1e9, 1e9, 3, 0.05});
         // As wide as there is room, whatever the range.

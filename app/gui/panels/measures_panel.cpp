@@ -93,11 +93,11 @@ MeasuresPanel::MeasuresPanel(Services& services, RulerController& rulers, QWidge
 void MeasuresPanel::makeList() {
     m_list->setRootIsDecorated(false);
     m_list->setHeaderLabels({tr("Name"), tr("Kind"), tr("Value")});
-    const QString tips[] = {tr("Unchecked measures are hidden in picture and slices. F2 renames, Delete removes."),
-                            tr("What is measured"),
-                            tr("Lengths in the unit of the volume, mm for medical files; angles in degrees; values in\n"
-                               "data units, mean ± standard deviation (by n) of the voxels whose centres lie in\n"
-                               "the sphere or box. Clipping and transfer function do not count.")};
+    const QString tips[] = {
+        tr("Unchecked measures are hidden in picture and slices. F2 renames, Delete removes."), tr("What is measured"),
+        tr("Lengths are in the unit of the volume (mm for patient data), angles in degrees, values in\n"
+           "data units, mean ± standard deviation (by n) of the voxels whose centres lie in\n"
+           "the sphere or box. Clipping and transfer function do not count.")};
     for (int column = 0; column <= kValue; ++column) m_list->headerItem()->setToolTip(column, tips[column]);
     m_list->header()->setStretchLastSection(true);
     m_list->header()->setSectionResizeMode(kName, QHeaderView::ResizeToContents);

@@ -36,10 +36,10 @@ ProbePlot::ProbePlot(Services& services, ProbeController& probe, QWidget* parent
     setObjectName("probePlot");
     setAccessibleName(tr("Values and opacity along the ray"));
     setMouseTracking(true);
-    setToolTip(tr("Along the ray, from where it enters the volume at the left (depth in %1).\n"
+    setToolTip(tr("Along the ray, from where it enters the volume at the left (depth in\n"
+                  "the unit of the volume).\n"
                   "Area: the values, in the colours of the transfer function. Line: the opacity, 0 to 1,\n"
-                  "that has accumulated. Below: which feature it is in.")
-                   .arg(tr("world units, mm of a patient")));
+                  "that has accumulated. Below: which feature it is in."));
 }
 
 QString ProbePlot::valueText(const Scene& scene, double value) {

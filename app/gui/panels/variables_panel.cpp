@@ -22,6 +22,7 @@
 #include "session/scene_data.h"
 #include "session/variable_edits.h"
 #include "volume/file_contents.h"
+#include "volume/orientation.h"
 #include "volume/procedural.h"
 #include "widgets/controls.h"
 #include "widgets/elided.h"
@@ -84,7 +85,8 @@ std::map<std::string, VariableInfo> lookAt(const Scene& scene, const JobControl&
             const VolumeSource& source = series->listing().frames[static_cast<std::size_t>(frame)].source;
             if (!variable.derivation && !source.isSample() && !source.raw) info.arrays = contentsOf(source, job).arrays;
             info.dims = volume->dims();
-            info.sameGrid = onSameGrid(volume->geometry(), scene.volume->geometry());
+            const Geometry& grid = scene.volume->geometry();
+            info.sameGrid = onSameGrid(inUnit(volume->geometry(), unitOf(grid)), grid);
             info.wholeRange =
                 variable.window || !series->varies() || series->listing().declaredRange || series->isSurveyed();
             info.range = variable.window   ? *variable.window

@@ -88,13 +88,14 @@ void StatusLine::followScene() {
                     .arg(scene.session.frame + 1)
                     .arg(scene.series->size());
     m_volume->setText(text);
-    m_volume->setToolTip(tr("%1, values %2, spacing %3 × %4 × %5, %L6 invalid voxels\naxes: %7")
+    m_volume->setToolTip(tr("%1, values %2, spacing %3 × %4 × %5 %8, %L6 invalid voxels\naxes: %7")
                              .arg(QString::fromStdString(volume.format), rangeText(volume.dataRange()))
                              .arg(volume.geometry().spacing.x)
                              .arg(volume.geometry().spacing.y)
                              .arg(volume.geometry().spacing.z)
                              .arg(volume.invalidCount())
-                             .arg(QString::fromStdString(axesText(volume.geometry()))));
+                             .arg(QString::fromStdString(axesText(volume.geometry())),
+                                  QString::fromUtf8(lengthUnit(volume.geometry()))));
     const ViewAngles angles = viewAngles(scene.camera, volume.geometry());
     m_camera->setText(QStringLiteral("%1°, %2°  ×%3")
                           .arg(angles.azimuth, 0, 'f', 0)

@@ -217,13 +217,16 @@ void readCoordinates(const ArrayFile& file, Axis& axis, std::size_t number, std:
     axis.first = at.front();
 }
 
-/// One unit for all lengths, which is returned where it is known; what cannot be made one is told.
+/// One unit for all lengths; what cannot be made one is told. Returned is that unit, where it is known of each axis.
 LengthUnit unifyUnits(std::vector<Axis*>& places, std::vector<std::string>& notices) {
     std::vector<std::string> units;
     for (const Axis* axis : places)
         if (!axis->unit.empty() && std::ranges::find(units, axis->unit) == units.end()) units.push_back(axis->unit);
+    const bool areKnown =
+        std::ranges::none_of(places, [](const Axis* axis) { return axis->size > 1 && axis->unit.empty(); });
     if (units.empty()) return LengthUnit::Unknown;
-    if (units.size() == 1) return lengthUnitNamed(units.front()).value_or(LengthUnit::Unknown);
+    if (units.size() == 1)
+        return areKnown ? lengthUnitNamed(units.front()).value_or(LengthUnit::Unknown) : LengthUnit::Unknown;
     const auto isLength = [](const std::string& unit) { return lengthUnitNamed(unit).has_value(); };
     const auto isAngle = [](const std::string& unit) { return unit.starts_with("degree"); };
     if (std::ranges::all_of(units, isAngle)) return LengthUnit::Unknown;
@@ -241,7 +244,7 @@ LengthUnit unifyUnits(std::vector<Axis*>& places, std::vector<std::string>& noti
         axis->first = converted(axis->first, own, unit);
     }
     notices.push_back("lengths are given in " + joined(units, " and ") + ": shown in " + name);
-    return unit;
+    return areKnown ? unit : LengthUnit::Unknown;
 }
 
 /// Places in the world: x, y and z of the file along those of the world, whichever way they are stored.

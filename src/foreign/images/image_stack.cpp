@@ -87,9 +87,13 @@ std::size_t chosenOf(const std::vector<ImageInFile>& all, const std::string& wan
 
 /// Whether pixels are as far apart, but for rounding.
 bool isSameSpacing(const SliceMetadata& a, const SliceMetadata& b) {
+    if ((a.lengthUnit == LengthUnit::Unknown) != (b.lengthUnit == LengthUnit::Unknown)) return false;
     constexpr double kRounding = 1e-5;
-    for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(a.spacing[axis] - b.spacing[axis]) > kRounding * a.spacing[axis]) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis == 2 && !a.isApartKnown) continue;
+        const double other = converted(b.spacing[axis], b.lengthUnit, a.lengthUnit);
+        if (std::abs(a.spacing[axis] - other) > kRounding * a.spacing[axis]) return false;
+    }
     return a.isApartKnown == b.isApartKnown;
 }
 

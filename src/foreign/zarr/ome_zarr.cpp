@@ -351,6 +351,7 @@ void OmeZarr::addImage(const std::string& folder, const std::string& name, const
             image.notices.push_back("the axes have different units (" + printable(unit) + ", " +
                                     printable(axes.units[at]) + "): their numbers are taken as they are");
         }
+        if (axes.units[at].empty() && image.levels.front().shape()[at] > 1) isOneUnit = false;
         const auto inFirst = [&](double length) { return own && first ? converted(length, *own, *first) : length; };
         image.spacing[a] = inFirst(placements.front().steps[at]);
         for (std::size_t level = 0; level < image.levels.size(); ++level)

@@ -85,6 +85,14 @@ int lengthCode(LengthUnit unit) {
     return unit == LengthUnit::Metre ? 1 : unit == LengthUnit::Millimetre ? 2 : unit == LengthUnit::Micrometre ? 3 : 0;
 }
 
+/// In a unit that there is a code for.
+Geometry inUnitOfNifti(const Geometry& g) {
+    const LengthUnit unit = unitOf(g);
+    if (unit == LengthUnit::Unknown || lengthCode(unit) != 0) return g;
+    const bool isSmall = converted(1, unit, LengthUnit::Micrometre) < 1;
+    return inUnit(g, isSmall ? LengthUnit::Micrometre : LengthUnit::Millimetre);
+}
+
 /// Row by row, 3 x 4.
 void placeGrid(Header& header, const NiftiForm& form, const Geometry& g) {
     header.putCode(form.sformCode, 1);
@@ -102,7 +110,7 @@ Header headerOf(const FramesToWrite& frames) {
         std::int16_t code, bits;
     };
     constexpr Type kTypes[] = {{2, 8}, {256, 8}, {512, 16}, {4, 16}, {768, 32}, {8, 32}, {16, 32}, {64, 64}};
-    const Geometry& g = frames.geometry;
+    const Geometry g = inUnitOfNifti(frames.geometry);
     const Type type = kTypes[static_cast<std::size_t>(frames.type)];
     const bool several = frames.count > 1;
     const NiftiForm& form = formFor(frames);
@@ -136,7 +144,7 @@ void write(const FramesToWrite& frames, const std::string& path, const JobContro
 bool isFloat(double value) { return static_cast<double>(static_cast<float>(value)) == value; }
 
 std::vector<std::string> losses(const FramesToWrite& frames, const std::string&) {
-    const Geometry& g = frames.geometry;
+    const Geometry g = inUnitOfNifti(frames.geometry);
     const bool isWide = formFor(frames).version == 2;
     std::vector<std::string> lost;
     if (isWide)
@@ -150,8 +158,9 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string&)
     const bool isTurned = g.directions != Mat3(1) || g.origin != Vec3(0);
     if (g.worldAxes == WorldAxes::File && isTurned)
         lost.emplace_back("NIfTI takes every place for one of a patient: the file will be read as such");
-    if (const LengthUnit unit = unitOf(g); unit != LengthUnit::Unknown && lengthCode(unit) == 0)
-        lost.push_back(std::string("NIfTI knows no unit of length called ") + sign(unit));
+    if (unitOf(g) != unitOf(frames.geometry))
+        lost.push_back(std::string("NIfTI cannot state lengths in ") + lengthUnit(frames.geometry) +
+                       ": they are converted to " + lengthUnit(g));
     if (!frames.times) return lost;
     if (!isKept(frames.times->width) || !isKept(frames.times->first))
         lost.emplace_back("NIfTI keeps times to seven digits");

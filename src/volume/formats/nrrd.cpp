@@ -203,8 +203,8 @@ std::vector<std::string> unitsIn(const TextHeader& header, const std::vector<std
     return units;
 }
 
-/// The header's unit of length; Unknown where it names none that is known. Throws FileError where axes have different
-/// ones.
+/// The header's unit of length; Unknown where it names none that is known or, where no patient is, not one for each
+/// axis. Throws FileError where axes have different ones.
 LengthUnit lengthUnitIn(const TextHeader& header, const std::vector<std::size_t>& inSpace, bool ofPatient,
                         std::vector<std::string>& notices) {
     const std::vector<std::string> units = unitsIn(header, inSpace);
@@ -212,7 +212,7 @@ LengthUnit lengthUnitIn(const TextHeader& header, const std::vector<std::size_t>
     const auto first = lengthUnitNamed(units.front());
     for (const std::string& unit : units) {
         const auto other = lengthUnitNamed(unit);
-        if (lowerCase(unit) == lowerCase(units.front()) || (first && first == other)) continue;
+        if (first && other ? first == other : lowerCase(unit) == lowerCase(units.front())) continue;
         const std::string differ =
             "the header measures axes in different units, " + inQuotes(units.front()) + " and " + inQuotes(unit);
         if (ofPatient || (first && other)) header.fail(differ, "convert them, and correct space units or units");
@@ -222,7 +222,8 @@ LengthUnit lengthUnitIn(const TextHeader& header, const std::vector<std::size_t>
     if (!first && ofPatient)
         notices.push_back("the unit of length " + printable(inQuotes(units.front())) +
                           " is not known: millimetres are assumed");
-    return first.value_or(LengthUnit::Unknown);
+    const bool isOfAll = ofPatient || units.size() == inSpace.size();
+    return isOfAll ? first.value_or(LengthUnit::Unknown) : LengthUnit::Unknown;
 }
 
 /// What the header says of its axes one by one, with no direction in space. Numbers are NaN where it does not say.

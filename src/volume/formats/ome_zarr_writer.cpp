@@ -171,7 +171,7 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string&)
     std::vector<std::string> lost;
     if (g.directions != Mat3(1)) lost.emplace_back("OME-Zarr has no rotations: the volume will lie along the axes");
     if (g.worldAxes == WorldAxes::Patient) lost.emplace_back("OME-Zarr does not say that places are a patient's");
-    if (g.lengthUnit == LengthUnit::Thou) lost.emplace_back("OME-Zarr knows no unit of length called thou");
+    if (g.lengthUnit == LengthUnit::Thou) lost.emplace_back("OME-Zarr has no unit for thousandths of an inch");
     if (frames.times && !frames.times->unit.empty() && timeUnit(frames.times->unit).empty())
         lost.push_back("OME-Zarr knows no unit of time called " + inQuotes(frames.times->unit));
     return lost;

@@ -124,7 +124,7 @@ std::vector<std::string> losses(const FramesToWrite& frames, const std::string& 
     if (frames.geometry.worldAxes == WorldAxes::Patient)
         lost.emplace_back("VTK image data does not say that places are a patient's");
     if (frames.geometry.lengthUnit != LengthUnit::Unknown)
-        lost.emplace_back("VTK image data does not say in what unit lengths are");
+        lost.emplace_back("VTK image data cannot store the unit of length");
     if (frames.times && !frames.times->unit.empty())
         lost.emplace_back("a collection of VTK does not say in what unit times are");
     return lost;

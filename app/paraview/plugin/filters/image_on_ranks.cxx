@@ -261,10 +261,12 @@ Answer optimized(Communicator& ranks, const Prepared& prepared, const std::strin
     const OptimizeResult result = workspace.optimize(input, normalizedTargets(shares, count), {}, {});
     const OptimizeState &before = result.history.front(), &after = result.history[result.best];
     const TransferFunction tf = withShownOpacities(input.tf, after.opacity);
-    if (!file.empty() && ranks.rank() == 0) writeTfFile(tf, input.volume->range(), file);
+    const Volume& volume = *input.volume;
+    if (!file.empty() && ranks.rank() == 0)
+        writeTfFile({tf, volume.range(), volume.geometry(), presetNameOf(file), volume.dataRange()}, file);
     Answer answer;
-    answer.preset = paraViewPreset(tf, input.volume->range(), "Pellucid").dump();
-    answer.unitDistance = input.volume->geometry().d0();
+    answer.preset = paraViewPreset(tf, volume.range(), "Pellucid").dump();
+    answer.unitDistance = volume.geometry().d0();
     if (ranks.rank() != 0) return answer;
     for (const Feature& feature : input.tf.features) answer.features.push_back(feature.name);
     answer.targets = result.targets;
