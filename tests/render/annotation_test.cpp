@@ -1,5 +1,7 @@
 // Annotations: what they say, and where.
 #include <map>
+#include <set>
+#include <string>
 
 #include <catch2/catch.hpp>
 

@@ -73,8 +73,7 @@ void setSpacing(PageOrder& order, const Distances& stated) {
         }
         const std::optional<LengthUnit> from = lengthUnitNamed(unit);
         const bool isSame = trimmed(unit) == trimmed(common) || (from && from == to);
-        order.spacing[a] =
-            lengthOf(from && to ? converted(distances[a], *from, *to) : distances[a], distances[first]);
+        order.spacing[a] = lengthOf(from && to ? converted(distances[a], *from, *to) : distances[a], distances[first]);
         if (isSame || (from && to)) continue;
         order.lengthUnit = LengthUnit::Unknown;
         order.notices.push_back("distances along " + axis(a) + " are in " + inQuotes(unit) + ", those along " +
