@@ -258,7 +258,7 @@ TEST_CASE("a volume is resampled where its voxels lie in the world", "[derived]"
     inMicrons.origin *= 1000;
     const Volume same = resampledTo(volume.withGeometry(inMm), inMicrons);
     for (std::size_t i = 0; i < same.size(); ++i) CHECK(same.value(i) == Approx(out.value(i)).margin(1e-5));
-    CHECK(onSameGrid(inUnit(inMicrons, LengthUnit::Millimetre), inMicrons));
+    CHECK(onSameGrid(inUnit(inMicrons, LengthUnit::Millimetre), fine));
     fine.origin.x = -2; // the columns of the last ones lie beyond the box
     CHECK(resampledTo(volume, fine).invalidCount() > 0);
 }
