@@ -249,7 +249,9 @@ TEST_CASE("a spacing that is too small or too large to compute with is refused w
     CHECK_THAT(errorOf(folder.write("a.nii", nifti.header() + std::string(24, 'x'))),
                Contains("spacing of axis 1 is 1e-20, too small"));
     nifti.pixdim[2] = 1e22f;
-    nifti.units = 1; // metres, 1000 of ours
+    nifti.units = 1; // metres, each of which is 1000 of a patient's
+    nifti.sformCode = 1;
+    nifti.sform = {1, 0, 0, 0, 0, 1e22f, 0, 0, 0, 0, 1, 0};
     CHECK_THAT(errorOf(folder.write("b.nii", nifti.header() + std::string(24, 'x'))),
                Contains("spacing of axis 1 is 1e+25, too large"));
 }
