@@ -44,12 +44,9 @@ Target targetNamed(const std::string& name) {
     }
 }
 
-/// A transfer function, and what it is written for.
+/// A transfer function, with what it is written for and what is to be said of it.
 struct Source {
-    TransferFunction tf;                    ///< opacities of one reference length of `geometry`
-    std::optional<ValueRange> window, data; ///< of the volume: what it is shown through, and all its values
-    std::string dataOf;                     ///< as frameOfDataRange()
-    std::optional<Geometry> geometry;
+    TfToWrite writing;
     std::vector<std::string> notices;
 };
 
@@ -58,33 +55,31 @@ TransferFunction asWritten(const ReadTf& read, const Geometry& geometry) {
     return withOpacitiesPer(read.tf, geometry.d0() / read.length.inWorld(geometry));
 }
 
-Source sourceOf(const TfConversion& conversion, const SceneOptions& options, Progress& progress) {
+Source sourceOf(const TfConversion& conversion, const SceneOptions& options, const std::string& out,
+                Progress& progress) {
     const std::string spec = *options.volume.path;
     const bool isAutomatic = spec == kAutomaticTf;
-    Source source;
+    std::vector<std::string> notices;
     std::optional<ReadTf> read;
     if (!isAutomatic) {
         read = readTfNamed(spec);
-        source.notices = read->notices;
+        notices = read->notices;
     }
     if (!conversion.volume) {
         if (isAutomatic) throw UsageError("what the data propose needs data", "TF auto", "add --volume FILE");
-        if (read->positions) source.notices.push_back(noDomainNotice(*read->positions, {}));
-        source.tf = asWritten(*read, unknownVolume());
-        return source;
+        if (read->positions) notices.push_back(noDomainNotice(*read->positions, {}));
+        return {{asWritten(*read, unknownVolume()), {}, {}, presetNameOf(out)}, std::move(notices)};
     }
     SceneOptions ofVolume = options;
     ofVolume.volume.path = conversion.volume;
     if (isAutomatic) ofVolume.tf.spec = spec;
     const Opened opened = resolve(ofVolume, progress, {.use = {}, .byEngine = false, .needsTf = isAutomatic});
-    source.geometry = opened.scene.volume->geometry();
-    source.data = dataRangeOf(opened.scene);
-    source.dataOf = frameOfDataRange(opened.scene);
-    source.window = read && read->spansData ? *source.data : opened.scene.volume->range();
-    source.tf = read ? asWritten(*read, *source.geometry) : opened.scene.tf;
-    if (read && read->positions) source.notices.push_back(noDomainNotice(*read->positions, source.window));
-    addTo(source.notices, opened.notices());
-    return source;
+    const Scene& scene = opened.scene;
+    const ValueRange window = read && read->spansData ? dataRangeOf(scene) : scene.volume->range();
+    if (read && read->positions) notices.push_back(noDomainNotice(*read->positions, window));
+    addTo(notices, opened.notices());
+    const TransferFunction tf = read ? asWritten(*read, scene.volume->geometry()) : scene.tf;
+    return {toWrite(tf, scene, out, window), std::move(notices)};
 }
 
 } // namespace
@@ -97,17 +92,15 @@ Answer convertTf(const TfConversion& conversion, const SceneOptions& options, co
                  Progress& progress) {
     if (!options.volume.path) throw UsageError("no transfer function is named", "TF", "give a file, such as a.tf.json");
     const Target target = atOption("--to " + conversion.format, [&] { return targetNamed(conversion.format); });
-    const Source source = sourceOf(conversion, options, progress);
-    TfToWrite writing(source.tf, source.window, source.geometry, presetNameOf(out), source.data);
-    writing.sayDataIsOf(source.dataOf);
+    const auto [writing, said] = sourceOf(conversion, options, out, progress);
     const WrittenTf written = target.write(writing);
     writeTextAtomically(out, written.text);
-    std::vector<std::string> losses = source.notices;
+    std::vector<std::string> losses = said;
     addTo(losses, written.losses);
     Json json{{"command", "convert"},
               {"file", out},
               {"to", target.name()},
-              {"points", source.tf.points.size()},
+              {"points", writing.tf().points.size()},
               {"reference_length", writing.geometry().d0()},
               {"losses", losses}};
     if (writing.hasRange()) json["range"] = {writing.range().lo, writing.range().hi};
