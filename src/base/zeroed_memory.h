@@ -1,4 +1,4 @@
-// Memory for large arrays that several threads fill.
+// Zeroed memory for large arrays, in large pages.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@
 namespace pellucid {
 
 /// `bytes` of zeros, as the system hands them out: pages are first touched by the threads that fill them, not by one
-/// thread that clears them; large arrays get large pages where the system has them. Freed by std::free. Throws
+/// thread that clears them. Large arrays get large pages where the system has them: touching memory for the first time
+/// is most of what it takes to fill it, and large pages make that a few times cheaper. Freed by std::free. Throws
 /// std::bad_alloc.
 void* allocateZeroed(std::size_t bytes);
 

@@ -262,7 +262,9 @@ void placeGrid(DicomStack& stack, const std::vector<DicomFrame>& frames, const P
     geometry.worldAxes = isPlaced ? WorldAxes::Patient : WorldAxes::File;
     if (!isPlaced) geometry.lengthUnit = LengthUnit::Millimetre; // as DICOM has it, wherever that is
     if (!first.spacing)
-        stack.notices.emplace_back("the files do not say how far pixels are from each other: 1 mm is taken");
+        stack.notices.emplace_back(
+            "the files do not say how far pixels are from each other: 1 mm is taken unless you set "
+            "the spacing");
     if (slices.size() > 1 && !places.areKnown)
         stack.notices.emplace_back(
             "the files do not say where slices lie: they are shown in the order of their numbers, " +

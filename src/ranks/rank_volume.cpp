@@ -151,7 +151,6 @@ Volume loadOnRanks(Communicator& ranks, const VolumeSource& source, RankLayout& 
     VolumeSource part = source;
     part.downsample = 1;
     part.range.reset();
-    part.axes.reset();
     part.then = {}; // how much its block takes is known when it is there
     // A rank without a block reads a voxel, for what else there is to know.
     const bool none = isEmpty(block.region);

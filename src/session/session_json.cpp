@@ -18,6 +18,7 @@
 #include "session/ground_file.h"
 #include "tf/formats/tf_json.h"
 #include "volume/series.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -161,7 +162,7 @@ json fromSource(const VolumeSource& s, const std::string& folder, DataPaths path
         j["raw"] = {{"dims", {s.raw->dims.x, s.raw->dims.y, s.raw->dims.z}},
                     {"type", name(s.raw->type)},
                     {"endian", s.raw->bigEndian ? "big" : "little"},
-                    {"spacing", fromVec(s.raw->spacing)},
+                    {"spacing", fromVec(s.spacing.value_or(GridSpacing()).distances)},
                     {"skip", s.raw->skipBytes}};
     }
     for (const std::string& path : s.more) j["more"].push_back(storedPath(path, folder, paths));
@@ -173,6 +174,10 @@ json fromSource(const VolumeSource& s, const std::string& folder, DataPaths path
     if (!s.array.empty()) j["array"] = s.array;
     if (s.component != 0) j["component"] = s.component;
     if (s.axes) j["axes"] = gridAxesText(*s.axes);
+    if (s.spacing) {
+        j["spacing"] = fromVec(s.spacing->distances);
+        if (s.spacing->unit != LengthUnit::Unknown) j["unit"] = plainSign(s.spacing->unit);
+    }
     if (s.missing) j["missing"] = *s.missing;
     if (s.downsample != 0) j["downsample"] = s.downsample;
     if (s.region)
@@ -191,9 +196,18 @@ RawLayout toRawLayout(const JsonValue& j) {
     const std::string endian = j["endian"].text();
     if (endian != "big" && endian != "little") j["endian"].fail("no such byte order", "write little or big");
     raw.bigEndian = endian == "big";
-    raw.spacing = toVec(j["spacing"], std::numeric_limits<double>::min(), kHuge);
     raw.skipBytes = static_cast<std::uint64_t>(j["skip"].integer(0, std::numeric_limits<std::int64_t>::max()));
     return raw;
+}
+
+GridSpacing toGridSpacing(const JsonValue& j) {
+    GridSpacing spacing;
+    spacing.distances = toVec(j["spacing"], kLeastSpacing, kMostSpacing);
+    if (!j.has("unit")) return spacing;
+    const auto unit = lengthUnitNamed(j["unit"].text());
+    if (!unit) j["unit"].fail("no such unit of length", "write one such as nm, um, mm, cm, m or in");
+    spacing.unit = *unit;
+    return spacing;
 }
 
 VoxelRegion toRegion(const JsonValue& j) {
@@ -228,7 +242,12 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
         if (path.empty()) j["path"].fail("the name of the data file is empty");
         s.path = foundPath(path, folder);
     }
-    if (j.has("raw")) s.raw = toRawLayout(j["raw"]);
+    if (j.has("raw")) {
+        s.raw = toRawLayout(j["raw"]);
+        s.spacing = toGridSpacing(j["raw"]); // of sessions that have it nowhere else
+        if (*s.spacing == GridSpacing()) s.spacing.reset();
+    }
+    if (j.has("spacing")) s.spacing = toGridSpacing(j);
     if (j.has("more"))
         for (const JsonValue& path : j["more"].items()) s.more.push_back(foundPath(path.text(), folder));
     if (j.has("frames")) {

@@ -277,17 +277,32 @@ void setDataSource(Session& session, const VolumeSource& source) {
     });
 }
 
-void setDataAxes(Session& session, const std::optional<GridAxes>& axes) {
+namespace {
+
+/// Of the sources of all variables that are not made of others.
+template <class T>
+void setOfSources(Session& session, std::optional<T> VolumeSource::*member, const std::optional<T>& value) {
     session.variables.edit([&](std::vector<Variable>& all) {
         for (Variable& v : all)
-            if (!v.derivation) v.source.axes = axes;
+            if (!v.derivation) v.source.*member = value;
     });
 }
 
-void turnData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes) {
+} // namespace
+
+void setDataAxes(Session& session, const std::optional<GridAxes>& axes) {
+    setOfSources(session, &VolumeSource::axes, axes);
+}
+void setDataSpacing(Session& session, const std::optional<GridSpacing>& spacing) {
+    setOfSources(session, &VolumeSource::spacing, spacing);
+}
+
+void placeData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes,
+               const std::optional<GridSpacing>& spacing) {
+    const Volume after = withPlacement(volume, axes, spacing);
     setDataAxes(session, axes);
-    const Volume after = withAxes(volume, axes);
-    const Mat3 turn = after.geometry().directions * glm::inverse(volume.geometry().directions);
+    setDataSpacing(session, spacing);
+    const Mat3 turn = after.geometry().worldFromIndex() * volume.geometry().indexFromWorld();
     const auto moved = [&](const Vec3& world) {
         return after.geometry().worldFromVoxel(volume.geometry().voxelFromWorld(world));
     };
@@ -304,7 +319,8 @@ void turnData(Session& session, const Volume& volume, const std::optional<GridAx
             for (std::vector<ClipPlane>* planes : {&clipping.planes, &clipping.rest.within.planes})
                 for (ClipPlane& plane : *planes) {
                     const Vec3 on = moved(plane.normal * (plane.offset / glm::dot(plane.normal, plane.normal)));
-                    plane.normal = glm::transpose(glm::inverse(turn)) * plane.normal;
+                    const Vec3 normal = glm::transpose(glm::inverse(turn)) * plane.normal;
+                    plane.normal = normal * (glm::length(plane.normal) / glm::length(normal));
                     plane.offset = glm::dot(plane.normal, on);
                 }
         });

@@ -60,10 +60,13 @@ std::string featuresOf(const Session& session, const std::string& text);
 /// the session has variables.
 const Variable& dataVariable(const Session& session);
 void setDataSource(Session& session, const VolumeSource& source);
-/// How the axes of the data of all variables run; empty: as their files say.
+/// How the axes of the data of all variables run, and how far their voxels are apart; empty: as their files say.
 void setDataAxes(Session& session, const std::optional<GridAxes>& axes);
-/// The same, of which the present data are `volume`: measures and clipping planes go along with them.
-void turnData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes);
+void setDataSpacing(Session& session, const std::optional<GridSpacing>& spacing);
+/// Both, of which the present data are `volume`: measures and clipping planes go along with them. Throws UsageError as
+/// withSpacing() does.
+void placeData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes,
+               const std::optional<GridSpacing>& spacing);
 
 /// Colours, opacities or range of another transfer function in the place of those of the session; a range becomes the
 /// window of the variable. `window`: the present one, for a transfer function that says of no values; nothing happens

@@ -124,19 +124,20 @@ GridAxes mirrored(GridAxes axes, int along) {
     return axes;
 }
 
-Volume withAxes(const Volume& volume, const std::optional<GridAxes>& axes) {
-    const Geometry& now = volume.geometry();
-    Geometry geometry = volume.inFile.value_or(now);
+Volume withPlacement(const Volume& volume, const std::optional<GridAxes>& axes,
+                     const std::optional<GridSpacing>& spacing) {
+    const Geometry inFile = volume.inFile.value_or(volume.geometry());
+    Geometry geometry = spacing ? withSpacing(volume, inFile, *spacing) : inFile;
     if (axes) {
+        const Vec3 middle = middleOfData(volume), place = geometry.worldFromVoxel(middle);
         geometry.directions = directionsOf(*axes);
         if (!axes->patient) geometry.lengthUnit = unitOf(geometry); // millimetres stay millimetres
         geometry.worldAxes = axes->patient ? WorldAxes::Patient : WorldAxes::File;
-        const Vec3 middle = middleOfData(volume);
-        geometry.origin += now.worldFromVoxel(middle) - geometry.worldFromVoxel(middle);
+        geometry.origin += place - geometry.worldFromVoxel(middle);
     }
     Volume other = volume.withGeometry(geometry);
     other.inFile.reset();
-    if (axes) other.inFile = volume.inFile.value_or(now);
+    if (axes || spacing) other.inFile = inFile;
     return other;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "volume/volume.h"
+#include "volume/grid_spacing.h"
 
 namespace pellucid {
 
@@ -35,8 +35,10 @@ GridAxes turned(GridAxes axes, int around);
 /// The data mirrored along world axis 0, 1 or 2.
 GridAxes mirrored(GridAxes axes, int along);
 
-/// The same samples with these axes; empty: as the file has them. The middle of all data stays where it is, whatever
-/// part of them `volume` is: parts and coarser copies lie where they lay in the whole.
-Volume withAxes(const Volume& volume, const std::optional<GridAxes>& axes);
+/// The same samples with these axes and distances; empty: as the file has them. Axes turn around the middle of all
+/// data, whatever part of them `volume` is: parts and coarser copies lie where they lay in the whole. Throws UsageError
+/// as withSpacing() does.
+Volume withPlacement(const Volume& volume, const std::optional<GridAxes>& axes,
+                     const std::optional<GridSpacing>& spacing);
 
 } // namespace pellucid

@@ -197,7 +197,7 @@ Volume loadHere(const VolumeSource& source, const JobControl& job) {
         volume.notices.push_back(
             (volume.invalidCount() > 0 ? "all valid voxels have the value " : "all voxels have the value ") +
             exactText(volume.dataRange().lo));
-    if (source.axes) volume = withAxes(volume, *source.axes);
+    if (source.axes || source.spacing) volume = withPlacement(volume, source.axes, source.spacing);
     if (source.range) volume = volume.withRange(*source.range);
     job.report(1.0);
     return volume;

@@ -14,12 +14,11 @@
 
 namespace pellucid {
 
-/// How headerless data lies in its file (--raw NX,NY,NZ,TYPE[,ENDIAN] --spacing --skip).
+/// How headerless data lies in its file (--raw NX,NY,NZ,TYPE[,ENDIAN] --skip).
 struct RawLayout {
     Int3 dims{0, 0, 0};
     SampleType type = SampleType::U8;
     bool bigEndian = false;
-    Vec3 spacing{1, 1, 1};
     std::uint64_t skipBytes = 0;
     bool operator==(const RawLayout&) const = default;
 };
@@ -45,11 +44,12 @@ struct VolumeSource {
     std::string array;             ///< of a file with named arrays; empty: its active scalars, the largest or the first
     std::optional<RawLayout> raw;  ///< given: the file is headerless
     std::optional<double> missing; ///< this value is invalid (besides what the file declares)
-    std::optional<ValueRange> range; ///< the user's intensity window
-    int component = 0;               ///< of a multi-component file
-    std::optional<GridAxes> axes;    ///< how i, j, k run, whatever the file says; empty: as it says
-    int sampleSize = 0;              ///< --size of a sample, 0 = its default
-    std::uint32_t seed = 1;          ///< of a sample
+    std::optional<ValueRange> range;    ///< the user's intensity window
+    int component = 0;                  ///< of a multi-component file
+    std::optional<GridAxes> axes;       ///< how i, j, k run, whatever the file says; empty: as it says
+    std::optional<GridSpacing> spacing; ///< likewise how far voxels are apart; empty and headerless: 1
+    int sampleSize = 0;                 ///< --size of a sample, 0 = its default
+    std::uint32_t seed = 1;             ///< of a sample
     /// Each voxel is the mean of so many along each axis (see excerpt.h). 1: all voxels, or an error where memory has
     /// no room for them; 0: likewise, but by the smallest factor for which there is room.
     int downsample = 0;
@@ -61,7 +61,8 @@ struct VolumeSource {
     bool operator==(const VolumeSource& o) const {
         return path == o.path && more == o.more && frames == o.frames && step == o.step && array == o.array &&
                raw == o.raw && missing == o.missing && range == o.range && component == o.component && axes == o.axes &&
-               sampleSize == o.sampleSize && seed == o.seed && downsample == o.downsample && region == o.region;
+               spacing == o.spacing && sampleSize == o.sampleSize && seed == o.seed && downsample == o.downsample &&
+               region == o.region;
     }
 };
 

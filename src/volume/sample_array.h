@@ -19,14 +19,16 @@ public:
     static constexpr std::size_t kPadding = MappedFile::kPadding / sizeof(T); ///< values
 
     SampleArray() = default;
-    SampleArray(std::vector<T> values) { // NOLINT: a vector of samples is samples
-        auto held = std::make_shared<const std::vector<T>>(std::move(values));
+    template <class Allocator = std::allocator<T>>
+    SampleArray(std::vector<T, Allocator> values) { // NOLINT: a vector of samples is samples
+        auto held = std::make_shared<const std::vector<T, Allocator>>(std::move(values));
         m_data = held->data();
         m_size = held->size();
         m_owner = std::move(held);
     }
     /// The first `count` of `values`; where kPadding more are there, the array is padded.
-    SampleArray(std::vector<T> values, std::size_t count) : SampleArray(std::move(values)) {
+    template <class Allocator = std::allocator<T>>
+    SampleArray(std::vector<T, Allocator> values, std::size_t count) : SampleArray(std::move(values)) {
         m_padded = m_size >= count + kPadding;
         m_size = count;
     }

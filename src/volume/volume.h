@@ -180,7 +180,8 @@ public:
     std::string title;              ///< file name or sample name
     std::string format;             ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
     std::optional<Excerpt> excerpt; ///< empty: all voxels of the data
-    std::optional<Geometry> inFile; ///< as the file has it, where the user said how the axes run
+    std::optional<Geometry>
+        inFile; ///< as the file has it, where the user said how axes run or how far voxels are apart
     /// Remarks the user should see once, e.g. "the first of 25 time steps is shown".
     std::vector<std::string> notices;
 

@@ -130,6 +130,9 @@ TEST_CASE("info reads headerless data as the options lay it out", "[cli]") {
     CHECK(j["range"] == json({256.0, 262.0}));
     CHECK(j["invalid"] == 1);
     CHECK(j["format"] == "raw");
+    CHECK(j["unit"] == "units");
+    CHECK(w.json({"info", "v.dat", "--raw", "2,2,2,u16,big", "--skip", "3", "--spacing", "0.5,1,2,um"})["unit"] ==
+          "\u00b5m");
     const json windowed = w.json({"info", "v.dat", "--raw", "2,2,2,u16,big", "--skip", "3", "--range", "-5,1000.5"});
     CHECK(windowed["range"] == json({-5.0, 1000.5}));
     CHECK(windowed["data_range"] == json({256.0, 263.0}));

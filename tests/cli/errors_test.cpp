@@ -80,11 +80,12 @@ TEST_CASE("wrong values of the volume's options are wrong usage", "[cli][errors]
     checkFails(w, {"info", "v.raw", "--raw", "2,2,-2,u8"}, 2, "--raw");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u7"}, 2, "--raw");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8,middle"}, 2, "--raw");
-    checkFails(w, {"info", "v.raw", "--spacing", "1,1,1"}, 2, "give --raw");
+    checkFails(w, {"info", "v.raw", "--spacing", "1,1,1"}, 1, "give --raw");
     checkFails(w, {"info", "v.raw", "--skip", "4"}, 2, "give --raw");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--spacing", "1,-1,1"}, 2, "--spacing");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--spacing", "1,1"}, 2, "--spacing");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--spacing", "1,nan,1"}, 2, "--spacing");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--spacing", "1,1,1,ells"}, 2, "not a unit of length");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--skip", "-1"}, 2, "--skip");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--size", "16"}, 2, "sample");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--component", "-1"}, 2, "--component");

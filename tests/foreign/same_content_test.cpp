@@ -235,7 +235,7 @@ TEST_CASE("the same content in every format is the same volume", "[same]") {
         source.path = path;
         if (format.starts_with("raw")) {
             source.raw = parseRawLayout("7,6,5,u16");
-            source.raw->spacing = kSpacing;
+            source.spacing = GridSpacing{kSpacing};
         }
         const auto loaded = std::make_shared<const Volume>(loadVolume(source));
         const Volume& read = *loaded;

@@ -96,7 +96,7 @@ TEST_CASE("a board on which an object lies is faint behind it, and a click leave
     OpenWindow w;
     VolumeSource source;
     source.path = folder.write("onboard.raw", test::ballOnBoard());
-    source.raw = RawLayout{{40, 40, 40}, SampleType::U8, false, {1, 1, 1}, 0};
+    source.raw = RawLayout{{40, 40, 40}, SampleType::U8, false, 0};
     w.opening().openVolume(source);
     REQUIRE(waitFor([&] { return w.document().volume()->title == "onboard.raw"; }));
     w.settle();

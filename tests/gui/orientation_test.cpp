@@ -1,10 +1,11 @@
-// Data that are turned, mirrored, or whose axes the user names.
+// Data that are turned, mirrored, or whose axes or spacing the user states.
 #include "gui_support.h"
 
 #include <QAction>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialogButtonBox>
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QMessageBox>
 #include <QPushButton>
@@ -13,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "dialogs/axes_dialog.h"
+#include "dialogs/spacing_dialog.h"
 #include "session/variable_edits.h"
 #include "volume/orientation.h"
 
@@ -144,5 +146,53 @@ TEST_CASE("who names the axes of a patient gets the words of anatomy, and the fi
     CHECK(ofFile.isEnabled());
     trigger(w, "axesOfFileAction");
     CHECK(axesText(geometryOf(w)) == "+x, +y, +z");
+    CHECK_FALSE(ofFile.isEnabled());
+}
+
+TEST_CASE("who says how far voxels are apart gets a volume, measures and a scale bar of that size, and can undo it",
+          "[gui][orientation]") {
+    OpenWindow w;
+    SessionStore& store = w.services().store();
+    const Geometry before = geometryOf(w);
+    const Camera camera = w.services().scene().camera;
+    QAction& ofFile = w.child<QAction>("spacingOfFileAction");
+    CHECK_FALSE(ofFile.isEnabled());
+    const Vec3 a(4, 5, 6), b(4, 5, 16); // voxels
+    editPart(store, &Session::rulers, "Measure", {}, [&](std::vector<Ruler>& rulers) {
+        addRuler(rulers, {.points = {before.worldFromVoxel(a), before.worldFromVoxel(b)}});
+    });
+    bool looked = false;
+    QTimer::singleShot(0, &w.window, [&] {
+        auto* dialog = w.window.findChild<SpacingDialog*>("spacingDialog");
+        if (dialog == nullptr) return;
+        auto* z = dialog->findChild<QDoubleSpinBox*>("spacingZ");
+        CHECK(z->value() == Approx(before.spacing.z));
+        CHECK(dialog->spacing() == spacingOfData(*w.services().scene().data));
+        z->setValue(4 * before.spacing.z);
+        auto* unit = dialog->findChild<QComboBox*>("spacingUnit");
+        unit->setCurrentText(QString::fromUtf8("\u00b5m"));
+        looked = true;
+        dialog->accept();
+    });
+    trigger(w, "spacingAction");
+    REQUIRE(looked);
+    const Geometry after = geometryOf(w);
+    CHECK(after.spacing.x == Approx(before.spacing.x));
+    CHECK(after.spacing.z == Approx(4 * before.spacing.z));
+    CHECK(std::string(lengthUnit(after)) == "\u00b5m");
+    CHECK(*readGeometry(w.services().scene().session.rulers->front()).length == Approx(40 * before.spacing.z));
+    // The camera stands as far from the volume as before, counted in volumes.
+    const auto distance = [](const Camera& c, const Geometry& g) {
+        return glm::distance(c.eye, g.boxCenter()) / g.radius();
+    };
+    CHECK(distance(w.services().scene().camera, after) == Approx(distance(camera, before)).epsilon(0.01));
+    CHECK(ofFile.isEnabled());
+    trigger(w, "undoAction");
+    CHECK(geometryOf(w).spacing == before.spacing);
+    CHECK(distance(w.services().scene().camera, before) == Approx(distance(camera, before)).epsilon(0.01));
+    trigger(w, "redoAction");
+    CHECK(geometryOf(w).spacing == after.spacing);
+    trigger(w, "spacingOfFileAction");
+    CHECK(geometryOf(w).spacing == before.spacing);
     CHECK_FALSE(ofFile.isEnabled());
 }

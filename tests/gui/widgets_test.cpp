@@ -223,6 +223,11 @@ TEST_CASE("the raw dialog guesses by the voxels, packed ones, too, and shows a s
     Q_EMIT guesses->activated(1);
     CHECK_FALSE(dialog.layoutOfFile() == RawLayout{{24, 20, 16}, SampleType::U16});
     CHECK(open->isEnabled());
+    CHECK_FALSE(dialog.spacing()); // nothing is said of it
+    dialog.findChild<QDoubleSpinBox*>("spacingX")->setValue(2.5e-7);
+    dialog.findChild<QComboBox*>("spacingUnit")->setCurrentText("m");
+    CHECK(dialog.spacing() == GridSpacing{{2.5e-7, 1, 1}, LengthUnit::Metre});
+    CHECK(dialog.findChild<QDoubleSpinBox*>("spacingX")->text() == "x  0.00000025");
 }
 
 TEST_CASE("what the core says becomes a sentence, and names stay as they are", "[notices]") {

@@ -145,6 +145,18 @@ TEST_CASE("each rank reads its block of a file, and a broken file is an error of
                                                        k - stored.lo.z)) == whole.value(voxelIndex(dims, i, j, k));
         CHECK(same);
     });
+    // How the data lie, as the user has it, is the same for all blocks.
+    source.axes = parseGridAxes("-z+x-y");
+    source.spacing = GridSpacing{{0.5, 1, 2}, LengthUnit::Micrometre};
+    const Geometry placed = loadHere(source).geometry();
+    onRanks(3, [&](Communicator& ranks) {
+        const Geometry own = loadOnRanks(ranks, source, layout).geometry();
+        CHECK(own.dims == placed.dims);
+        CHECK(own.directions == placed.directions);
+        CHECK(own.spacing == placed.spacing);
+        CHECK(own.lengthUnit == placed.lengthUnit);
+        CHECK(glm::distance(own.origin, placed.origin) < 1e-9);
+    });
     source.raw->dims.z = 34;
     CHECK_THROWS_AS(onRanks(3, [&](Communicator& ranks) { loadOnRanks(ranks, source, layout); }), FileError);
 }

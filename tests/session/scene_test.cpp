@@ -25,7 +25,7 @@ std::string ramp() {
 VolumeSource rawSource(const std::string& path) {
     VolumeSource source;
     source.path = path;
-    source.raw = RawLayout{{6, 6, 6}, SampleType::U8, false, {1, 1, 1}, 0};
+    source.raw = RawLayout{{6, 6, 6}, SampleType::U8, false, 0};
     return source;
 }
 

@@ -237,11 +237,11 @@ TEST_CASE("measures and clipping planes go along with data that are turned", "[v
 
     const Session old = s;
     const GridAxes axes = parseGridAxes("PIR");
-    turnData(s, before, axes);
+    placeData(s, before, axes, {});
     CHECK((*s.variables)[0].source.axes == axes);
     CHECK((*s.variables)[1].source.axes == axes);
     CHECK_FALSE((*s.variables)[2].source.axes); // it is made of one that is turned
-    const Geometry after = withAxes(before, axes).geometry();
+    const Geometry after = withPlacement(before, axes, {}).geometry();
     for (std::size_t p = 0; p < 2; ++p) {
         const Vec3 voxel = after.voxelFromWorld(s.rulers->front().points[p]);
         for (int axis = 0; axis < 3; ++axis) CHECK(voxel[axis] == Approx((p == 0 ? a : b)[axis]));
@@ -263,9 +263,24 @@ TEST_CASE("measures and clipping planes go along with data that are turned", "[v
     CHECK(kept > 0);
     CHECK(kept < all);
 
-    turnData(s, withAxes(before, axes), {});
+    placeData(s, withPlacement(before, axes, {}), {}, {});
     CHECK_FALSE((*s.variables)[0].source.axes);
     for (std::size_t p = 0; p < 2; ++p)
         for (int axis = 0; axis < 3; ++axis)
             CHECK(s.rulers->front().points[p][axis] == Approx(old.rulers->front().points[p][axis]));
+
+    // With other distances, measures and planes stay at their voxels, too.
+    const GridSpacing spacing{{0.5, 0.5, 4}};
+    placeData(s, before, {}, spacing);
+    CHECK((*s.variables)[0].source.spacing == spacing);
+    CHECK_FALSE((*s.variables)[2].source.spacing);
+    const Geometry spaced = withPlacement(before, {}, spacing).geometry();
+    for (int axis = 0; axis < 3; ++axis)
+        CHECK(spaced.voxelFromWorld(s.rulers->front().points[1])[axis] == Approx(b[axis]));
+    const auto spacedPlanes = planesInVoxels(*s.clipping, spaced);
+    for (int k = 0; k < g.dims.z; ++k)
+        for (int j = 0; j < g.dims.y; ++j)
+            for (int i = 0; i < g.dims.x; ++i)
+                CHECK(pellucid::keeps(oldPlanes, Vec3(i, j, k)) == pellucid::keeps(spacedPlanes, Vec3(i, j, k)));
+    CHECK(glm::length(s.clipping->planes.front().normal) == Approx(glm::length(Vec3(1, 2, 3))));
 }

@@ -24,7 +24,7 @@ inline VolumeSource boxesWithOutlier(const TempFolder& folder) {
             }
     VolumeSource source;
     source.path = folder.write("boxes.raw", bytes);
-    source.raw = RawLayout{{24, 24, 24}, SampleType::F32, false, {1, 1, 1}, 0};
+    source.raw = RawLayout{{24, 24, 24}, SampleType::F32, false, 0};
     return source;
 }
 

@@ -42,12 +42,13 @@ VolumeSource randomSource(Random& random) {
             raw.dims = {1 + random.below(1000), 1 + random.below(1000), 1 + random.below(1000)};
             raw.type = static_cast<SampleType>(random.below(8));
             raw.bigEndian = random.chance(0.5);
-            raw.spacing = oddVector(random, 1e-6, 1e6);
             raw.skipBytes = random.chance(0.5) ? 0 : static_cast<std::uint64_t>(9e18 * random.unit());
             s.raw = raw;
         }
         if (random.chance(0.3)) s.component = random.below(5);
     }
+    if (random.chance(0.4))
+        s.spacing = GridSpacing{oddVector(random, 1e-6, 1e6), static_cast<LengthUnit>(random.below(15))};
     if (random.chance(0.4)) s.missing = oddNumber(random, -1e300, 1e300);
     if (random.chance(0.3)) s.downsample = 1 + random.below(9);
     if (random.chance(0.3)) {

@@ -17,9 +17,9 @@
 
 #include <libdeflate.h>
 
-#include "base/large_pages.h"
 #include "base/mapped_file.h"
 #include "base/stopwatch.h"
+#include "base/zeroed_memory.h"
 #include "computing_time.h"
 #include "foreign/foreign_volume.h"
 #include "volume/loader.h"
@@ -75,7 +75,7 @@ Least inProcess(const std::string& path) {
                 box.region = {Int3(0), dimsOf(layout, 0)};
                 withType(layout.layout.type, [&](auto zero) {
                     using Value = decltype(zero);
-                    std::vector<Value> values = zerosInLargePages<Value>(bytesOf(box, layout, path) / sizeof(Value));
+                    ZeroedVector<Value> values(bytesOf(box, layout, path) / sizeof(Value));
                     volume->read(0, box, std::as_writable_bytes(std::span(values)), before, {});
                     if constexpr (std::is_floating_point_v<Value> || sizeof(Value) < 8) {
                         const Volume made({box.region.hi}, SampleArray<Value>(std::move(values)));

@@ -235,7 +235,7 @@ TEST_CASE("a spacing that is too small or too large to compute with is refused w
         sources[2].path = folder.write("a.vti", image);
         sources[3].path = folder.write("a.raw", "12345678");
         sources[3].raw = parseRawLayout("2,2,2,u8");
-        sources[3].raw->spacing.y = std::stod(value);
+        sources[3].spacing = GridSpacing{{1, std::stod(value), 1}};
         for (const VolumeSource& source : sources) {
             CAPTURE(source.path);
             if (*what == '\0')
@@ -362,9 +362,9 @@ TEST_CASE("a wrong raw layout is wrong usage", "[bad-input]") {
     VolumeSource source;
     source.path = folder.write("a.raw", std::string(8, 'x'));
     source.raw = parseRawLayout("2,2,2,u8");
-    source.raw->spacing = {1, -1, 1};
+    source.spacing = GridSpacing{{1, -1, 1}};
     CHECK_THROWS_AS(loadVolume(source), UsageError);
-    source.raw->spacing = {1, 1, 1};
+    source.spacing.reset();
     source.component = 1;
     CHECK_THROWS_AS(loadVolume(source), UsageError);
 }

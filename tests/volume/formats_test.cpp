@@ -106,12 +106,11 @@ TEMPLATE_TEST_CASE("raw data of each type reads in both byte orders, after skipp
     const SampleType type = Volume({{1, 1, 1}, {1, 1, 1}, {0, 0, 0}}, std::vector<TestType>(1)).sampleType();
     VolumeSource source;
     source.raw = parseRawLayout(std::string("2,3,4,") + name(type));
-    source.raw->spacing = {0.5, 1.5, 2.5};
+    source.spacing = GridSpacing{{0.5, 1.5, 2.5}};
     source.path = folder.write("little.bin", little); // any suffix: the layout decides
     CHECK(samplesOf<TestType>(loadVolume(source)) == values);
     source.raw = parseRawLayout(std::string("2,3,4,") + name(type) + ",big");
     source.raw->skipBytes = 7;
-    source.raw->spacing = {0.5, 1.5, 2.5};
     source.path = folder.write("big.nrrd", "skipped" + big);
     const Volume volume = loadVolume(source);
     CHECK(samplesOf<TestType>(volume) == values);

@@ -1,4 +1,4 @@
-// How the axes of a grid run where the user says it.
+// How the axes of a grid run, and how far its voxels are apart, where the user says it.
 #include <catch2/catch.hpp>
 
 #include "base/error.h"
@@ -79,15 +79,15 @@ TEST_CASE("data that are turned keep their values, their middle and their spacin
     REQUIRE(after.inFile);
     CHECK(after.inFile->directions == before.geometry().directions);
 
-    const Volume back = withAxes(after, {});
+    const Volume back = withPlacement(after, {}, {});
     CHECK(back.geometry().directions == before.geometry().directions);
     CHECK(back.geometry().worldAxes == before.geometry().worldAxes);
     checkNear(back.geometry().origin, before.geometry().origin);
     CHECK_FALSE(back.inFile);
     // Said twice it is as said once.
-    const Volume twice = withAxes(after, source.axes);
+    const Volume twice = withPlacement(after, source.axes, {});
     checkNear(twice.geometry().origin, after.geometry().origin);
-    checkNear(withAxes(twice, {}).geometry().origin, before.geometry().origin);
+    checkNear(withPlacement(twice, {}, {}).geometry().origin, before.geometry().origin);
 }
 
 TEST_CASE("parts and coarser copies of turned data lie where they lay in the whole", "[orientation]") {
@@ -109,10 +109,83 @@ TEST_CASE("lengths of a patient stay millimetres where the axes are called the f
     g.dims = {2, 2, 2};
     g.worldAxes = WorldAxes::Patient;
     const Volume volume(g, SampleArray<float>(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
-    const Volume other = withAxes(volume, parseGridAxes("+x+y+z"));
+    const Volume other = withPlacement(volume, parseGridAxes("+x+y+z"), {});
     CHECK(other.geometry().worldAxes == WorldAxes::File);
     CHECK(unitOf(other.geometry()) == LengthUnit::Millimetre);
-    CHECK(unitOf(withAxes(other, std::nullopt).geometry()) == LengthUnit::Millimetre);
+    CHECK(unitOf(withPlacement(other, {}, {}).geometry()) == LengthUnit::Millimetre);
     g.worldAxes = WorldAxes::File;
-    CHECK(unitOf(withAxes(volume.withGeometry(g), parseGridAxes("+y+x-z")).geometry()) == LengthUnit::Unknown);
+    CHECK(unitOf(withPlacement(volume.withGeometry(g), parseGridAxes("+y+x-z"), {}).geometry()) == LengthUnit::Unknown);
+}
+
+TEST_CASE("a spacing is written as three distances and a unit", "[orientation]") {
+    CHECK(parseGridSpacing("0.2,0.25,1") == GridSpacing{{0.2, 0.25, 1}});
+    CHECK(parseGridSpacing("0.2,0.25,1,um") == GridSpacing{{0.2, 0.25, 1}, LengthUnit::Micrometre});
+    CHECK(parseGridSpacing("1,1,2,inches").unit == LengthUnit::Inch);
+    for (const char* text : {"0.1,2,3e-09", "1,1,1,nm", "0.5,0.25,2,in"})
+        CHECK(gridSpacingText(parseGridSpacing(text)) == text);
+    for (const char* text :
+         {"", "1,1", "1,1,1,1,1", "1,0,1", "1,-1,1", "1,nan,1", "1,1e-13,1", "a,b,c", "1,1,1,", "1,1,1,ells"})
+        CHECK_THROWS_AS(parseGridSpacing(text), UsageError);
+}
+
+TEST_CASE("data whose spacing the user says keep values and first voxel, in all parts of them", "[orientation]") {
+    VolumeSource source = wholeSample();
+    const Volume before = loadVolume(source);
+    source.spacing = GridSpacing{{0.5, 2, 3}, LengthUnit::Micrometre};
+    const Volume after = loadVolume(source);
+    const Geometry& whole = after.geometry();
+    CHECK(whole.spacing == Vec3(0.5, 2, 3));
+    CHECK(whole.d0() == 0.5);
+    CHECK(unitOf(whole) == LengthUnit::Micrometre);
+    checkNear(whole.worldFromVoxel({0, 0, 0}), before.geometry().worldFromVoxel({0, 0, 0}));
+    CHECK(after.samples() == before.samples());
+    CHECK(spacingOfData(after) == *source.spacing);
+    const Geometry back = withPlacement(after, {}, {}).geometry();
+    CHECK(back.spacing == before.geometry().spacing);
+    CHECK(back.lengthUnit == before.geometry().lengthUnit);
+
+    source.region = VoxelRegion{{3, 2, 5}, {19, 12, 6}};
+    const Geometry part = loadVolume(source).geometry();
+    checkNear(part.worldFromVoxel({15, 9, 0}), whole.worldFromVoxel({18, 11, 5}));
+    source.downsample = 2; // but for the one layer of voxels, which is as thin as it was
+    const Volume coarse = loadVolume(source);
+    checkNear(coarse.geometry().spacing, {1, 4, 3});
+    checkNear(coarse.geometry().worldFromVoxel({1, 1, 0}), whole.worldFromVoxel({5.5, 4.5, 5}));
+    checkNear(spacingOfData(coarse).distances, {0.5, 2, 3});
+
+    // Turned besides: the middle of the box that these distances make stays.
+    source.region.reset();
+    source.downsample = 0;
+    source.axes = parseGridAxes("-z+x-y");
+    const Volume turned = loadVolume(source);
+    checkNear(turned.geometry().boxCenter(), whole.boxCenter());
+    CHECK(turned.geometry().spacing == Vec3(0.5, 2, 3));
+    REQUIRE(turned.inFile);
+    CHECK(turned.inFile->spacing == before.geometry().spacing);
+    CHECK(turned.inFile->directions == before.geometry().directions);
+}
+
+TEST_CASE("a spacing is in the unit of the file unless it names one", "[orientation]") {
+    Geometry g;
+    g.dims = {2, 2, 2};
+    g.origin = {3, 0, 0};
+    g.lengthUnit = LengthUnit::Millimetre;
+    const SampleArray<float> samples(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8});
+    const auto placed = [&](const char* spacing) {
+        return withPlacement(Volume(g, samples), {}, parseGridSpacing(spacing)).geometry();
+    };
+    CHECK(unitOf(placed("1,2,3")) == LengthUnit::Millimetre);
+    // Whatever a coordinate is measured in, the first voxel is at the same place.
+    const Geometry fine = placed("1,2,3,um");
+    CHECK(unitOf(fine) == LengthUnit::Micrometre);
+    CHECK(fine.spacing == Vec3(1, 2, 3));
+    CHECK(fine.origin.x == Approx(3000));
+    // Those of a patient are millimetres.
+    g.worldAxes = WorldAxes::Patient;
+    g.lengthUnit = LengthUnit::Unknown;
+    const Geometry patient = placed("1,2,3,cm");
+    CHECK(unitOf(patient) == LengthUnit::Millimetre);
+    CHECK(patient.spacing == Vec3(10, 20, 30));
+    CHECK(patient.origin.x == 3);
+    CHECK_THROWS_WITH(placed("1,1e-11,1,nm"), Catch::Contains("too small"));
 }

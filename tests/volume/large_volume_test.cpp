@@ -169,7 +169,8 @@ TEMPLATE_TEST_CASE("downsampling takes the means of blocks", "[large]", std::uin
                                                                                : "u32");
     VolumeSource source;
     source.path = folder.write("a.raw", bytesOfValues(data));
-    source.raw = RawLayout{full, *name, false, {0.5, 1, 2}, 0};
+    source.raw = RawLayout{full, *name, false, 0};
+    source.spacing = GridSpacing{{0.5, 1, 2}};
     for (const int factor : {1, 2, 3, 6, 100})
         for (const VoxelRegion& region : {VoxelRegion{{0, 0, 0}, full}, VoxelRegion{{2, 1, 1}, {9, 7, 4}}})
             for (const bool missing : {false, true}) {

@@ -15,14 +15,6 @@ namespace {
 
 constexpr const char* kGroup = "Volume";
 
-Vec3 parseSpacing(const std::string& text, const std::string& option) {
-    const auto v = parseReals(text, option, 3, "SX,SY,SZ in world units");
-    for (const double s : v)
-        if (!(s > 0))
-            throw UsageError("the spacing " + text + " is not positive", option, "give three numbers above 0");
-    return {v[0], v[1], v[2]};
-}
-
 /// "A:B[:STEP]", both ends included; A or B may be left out.
 FrameRange parseFrames(const std::string& text, const std::string& option) {
     const std::vector<std::string> parts = split(text, ':');
@@ -78,8 +70,14 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
             raw = atOption(option + " " + text, [&] { return parseRawLayout(text); });
         },
         "the file is headerless; TYPE is u8 i8 u16 i16 u32 i32 f32 f64, ENDIAN little (default) or big", kGroup);
-    addValue(app, "--spacing", "SX,SY,SZ", spacing, parseSpacing,
-             "voxel distances of --raw data in world units (default 1,1,1)", kGroup);
+    addValue(
+        app, "--spacing", "SX,SY,SZ[,UNIT]",
+        [this](const std::string& text, const std::string& option) {
+            spacing = atOption(option + " " + text, [&] { return parseGridSpacing(text); });
+        },
+        "distances between voxels, whatever the file says, in its unit of length or in UNIT: nm um mm cm m in "
+        "(default: the file's; 1,1,1 of --raw data)",
+        kGroup);
     addValue(app, "--skip", "BYTES", skipBytes, wholeFrom<std::uint64_t>(0, std::numeric_limits<long long>::max()),
              "bytes before the --raw data", kGroup);
     addValue(app, "--missing", "VALUE", missing, parseReal,
@@ -166,12 +164,10 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
         source = dataVariable(session).source;
     if (raw) source.raw = raw;
     const bool isSample = source.isSample();
-    refuse({{spacing && !source.raw, "--spacing is for headerless data", "--spacing", "give --raw as well"},
-            {skipBytes && !source.raw, "--skip is for headerless data", "--skip", "give --raw as well"},
+    refuse({{skipBytes && !source.raw, "--skip is for headerless data", "--skip", "give --raw as well"},
             {isSample && source.raw, "a built-in sample has no headerless file", "--raw", "leave it out"},
             {sampleSize && !isSample, "only built-in samples come in any size", "--sample-size",
              "leave it out or use sample:NAME"}});
-    if (spacing) source.raw->spacing = *spacing;
     if (skipBytes) source.raw->skipBytes = *skipBytes;
     if (missing) source.missing = missing;
     if (component) source.component = *component;
@@ -186,6 +182,7 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     if (session.isEmpty()) session.variables.edit([](std::vector<Variable>& all) { all.emplace_back(); });
     setDataSource(session, source);
     if (axes) setDataAxes(session, axes);
+    if (spacing) setDataSpacing(session, spacing);
     inputs.range = range;
     inputs.frame = frame;
 }

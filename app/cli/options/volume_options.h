@@ -21,7 +21,7 @@ VoxelRegion parseVoxelRegion(const std::string& text, const std::string& option)
 struct VolumeOptions {
     std::optional<std::string> path;
     std::optional<RawLayout> raw;
-    std::optional<Vec3> spacing;
+    std::optional<GridSpacing> spacing;
     std::optional<std::uint64_t> skipBytes;
     std::optional<double> missing;
     std::optional<ValueRange> range;

@@ -503,6 +503,7 @@ bool OpenController::askLayout(VolumeSource& source, const QStringList& files) {
     RawDialog dialog(files, m_services.window());
     if (dialog.exec() != QDialog::Accepted) return false;
     source.raw = dialog.layoutOfFile();
+    source.spacing = dialog.spacing();
     source.missing = dialog.missing();
     return true;
 }

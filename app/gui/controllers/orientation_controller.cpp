@@ -6,6 +6,7 @@
 
 #include "controllers/open_controller.h"
 #include "dialogs/axes_dialog.h"
+#include "dialogs/spacing_dialog.h"
 #include "services/services.h"
 #include "session/variable_edits.h"
 #include "volume/mirror_image.h"
@@ -24,7 +25,9 @@ int nearestAxis(const Vec3& direction) {
 OrientationController::OrientationController(Services& services, OpenController& opening)
     : m_services(services), m_opening(opening) {
     connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.data != after.data) tell();
+        if (before.data == after.data) return;
+        tell();
+        follow(before, after);
     });
     connect(&opening, &OpenController::opened, this, &OrientationController::tell); // its notices have taken this away
 }
@@ -59,8 +62,17 @@ void OrientationController::addActions() {
     menu.add("axesOfFileAction", tr("Reset to &file orientation"), {},
              tr("What the file says of its orientation holds again"),
              [this] { set(tr("Reset to file orientation"), {}); },
-             {.enabled = [this, canTurn] { return canTurn() && m_services.scene().data->inFile.has_value(); }});
+             {.enabled = [this, canTurn] { return canTurn() && source().axes.has_value(); }});
+    ActionMenu edit(m_services.actions(), tr("&Edit"), canTurn);
+    edit.add("spacingAction", tr("&Voxel spacing…"), {},
+             tr("The distances between voxels and their unit, for files that leave them out or get them wrong"),
+             [this] { chooseSpacing(); });
+    edit.add("spacingOfFileAction", tr("Reset to fi&le spacing"), {}, tr("Use the spacing that the file states"),
+             [this] { setSpacing(tr("Reset to file spacing"), {}); },
+             {.enabled = [this, canTurn] { return canTurn() && source().spacing.has_value(); }});
 }
+
+const VolumeSource& OrientationController::source() const { return dataVariable(m_services.store().session()).source; }
 
 GridAxes OrientationController::now() const { return nearestAxes(m_services.scene().data->geometry()); }
 
@@ -86,15 +98,48 @@ void OrientationController::tell() {
     if (!m_told.isEmpty()) notices.remove(m_told);
     m_told.clear();
     const auto& data = m_services.scene().data;
-    if (!data || !data->inFile) return;
+    if (!data || !source().axes) return;
     m_told = isMirrorImage(*data) ? tr("Mirrored: left and right are not as in the file.")
                                   : tr("Turned: the data do not lie as the file says.");
     notices.add({m_told, {{tr("Reset to file orientation"), [this] { set(tr("Reset to file orientation"), {}); }}}});
 }
 
+void OrientationController::follow(const Scene& before, const Scene& after) {
+    if (!before.data || !after.data || before.session.isEmpty() || after.session.isEmpty()) return;
+    const VolumeSource &was = dataVariable(before.session).source, &is = dataVariable(after.session).source;
+    const Geometry &from = before.data->geometry(), &to = after.data->geometry();
+    if (was.spacing == is.spacing || was.path != is.path || from.dims != to.dims || from.spacing == to.spacing) return;
+    Camera camera = after.camera;
+    const double scale = to.radius() / from.radius();
+    const Vec3 center = to.worldFromVoxel(from.voxelFromWorld(camera.center));
+    camera.eye = center + scale * (camera.eye - camera.center);
+    camera.center = center;
+    camera.height *= scale;
+    m_services.store().setCamera(camera);
+}
+
+void OrientationController::place(const QString& text, const std::optional<GridAxes>& axes,
+                                  const std::optional<GridSpacing>& spacing) {
+    m_services.attempt(tr("Cannot set this spacing"), [&] {
+        withPlacement(*m_services.scene().data, axes, spacing); // which tells what cannot be
+        const auto change = [axes, spacing, data = m_services.scene().data](Session& session) {
+            placeData(session, *data, axes, spacing);
+        };
+        m_opening.editData(text, change, [this] { tell(); });
+    });
+}
+
 void OrientationController::set(const QString& text, const std::optional<GridAxes>& axes) {
-    const auto change = [axes, data = m_services.scene().data](Session& session) { turnData(session, *data, axes); };
-    m_opening.editData(text, change, [this] { tell(); });
+    place(text, axes, source().spacing);
+}
+
+void OrientationController::setSpacing(const QString& text, const std::optional<GridSpacing>& spacing) {
+    place(text, source().axes, spacing);
+}
+
+void OrientationController::chooseSpacing() {
+    SpacingDialog dialog(spacingOfData(*m_services.scene().data), m_services.window());
+    if (dialog.exec() == QDialog::Accepted) setSpacing(tr("Voxel spacing"), dialog.spacing());
 }
 
 void OrientationController::choose() {

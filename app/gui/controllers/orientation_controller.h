@@ -1,9 +1,15 @@
-// How the data lie in the world: turned, mirrored, or said by the user where their file does not.
+// How the data lie in the world: turned, mirrored, or said by the user where their file does not; and how far their
+// voxels are apart.
 #pragma once
 
 #include <QObject>
 
 #include "volume/grid_axes.h"
+
+namespace pellucid {
+struct Scene;
+struct VolumeSource;
+} // namespace pellucid
 
 namespace pellucid::gui {
 
@@ -18,6 +24,8 @@ public:
     void addActions();
     /// Asks how the axes run.
     void choose();
+    /// Asks how far voxels are apart.
+    void chooseSpacing();
 
 private:
     GridAxes now() const;
@@ -25,7 +33,12 @@ private:
     void turn(const QString& text, const Vec3& about);
     void mirror(const Vec3& along);
     void tell(); ///< as long as the data do not lie as the file says
+    /// The camera keeps its place relative to data whose voxels are farther apart now.
+    void follow(const Scene& before, const Scene& after);
+    const VolumeSource& source() const;
     void set(const QString& text, const std::optional<GridAxes>& axes); ///< empty: as the file says
+    void setSpacing(const QString& text, const std::optional<GridSpacing>& spacing);
+    void place(const QString& text, const std::optional<GridAxes>& axes, const std::optional<GridSpacing>& spacing);
 
     Services& m_services;
     OpenController& m_opening;

@@ -16,6 +16,7 @@
 
 #include "dialogs/closing_buttons.h"
 #include "dialogs/slice_picture.h"
+#include "dialogs/spacing_dialog.h"
 #include "widgets/controls.h"
 #include "widgets/layouts.h"
 
@@ -68,14 +69,7 @@ RawDialog::RawDialog(const QStringList& paths, QWidget* parent)
         m_dims[i]->setAccessibleName(tr("Voxels along %1").arg(axis));
         m_dims[i]->setRange(1, 65536);
         m_dims[i]->setValue(guess.dims[i]);
-        m_spacing[i] = named(new QDoubleSpinBox(this), QStringLiteral("rawSpacing") + axis,
-                             tr("Distance of voxels along %1, in units of the world, such as mm").arg(axis));
-        m_spacing[i]->setAccessibleName(tr("Spacing along %1").arg(axis));
-        m_spacing[i]->setDecimals(6);
-        m_spacing[i]->setRange(1e-6, 1e9);
-        m_spacing[i]->setValue(1);
         m_dims[i]->setPrefix(QStringLiteral("%1  ").arg(axis));
-        m_spacing[i]->setPrefix(m_dims[i]->prefix());
         connect(m_dims[i], &QSpinBox::valueChanged, this, &RawDialog::check);
         connect(m_dims[i], &QSpinBox::editingFinished, this, [this] { m_isTouched = true; });
     }
@@ -111,7 +105,8 @@ RawDialog::RawDialog(const QStringList& paths, QWidget* parent)
     form->addRow(tr("Voxels"), rowOf({m_dims[0], m_dims[1], m_dims[2]}));
     form->addRow(tr("Type"), m_type);
     form->addRow(tr("Byte order"), m_endian);
-    form->addRow(tr("Spacing"), rowOf({m_spacing[0], m_spacing[1], m_spacing[2]}));
+    m_spacing = new SpacingFields(this);
+    m_spacing->addTo(*form);
     form->addRow(tr("Skip"), m_skip);
     form->addRow(tr("Missing value"), m_missing);
     auto* sides = new QHBoxLayout;
@@ -169,11 +164,15 @@ QString RawDialog::headOf(const QStringList& paths) const {
 RawLayout RawDialog::layoutOfFile() const {
     RawLayout layout;
     layout.dims = {m_dims[0]->value(), m_dims[1]->value(), m_dims[2]->value()};
-    layout.spacing = {m_spacing[0]->value(), m_spacing[1]->value(), m_spacing[2]->value()};
     layout.type = static_cast<SampleType>(m_type->currentData().toInt());
     layout.bigEndian = m_endian->currentIndex() == 1;
     layout.skipBytes = static_cast<std::uint64_t>(m_skip->value());
     return layout;
+}
+
+std::optional<GridSpacing> RawDialog::spacing() const {
+    const GridSpacing given = m_spacing->value();
+    return given == GridSpacing() ? std::nullopt : std::optional(given);
 }
 
 std::optional<double> RawDialog::missing() const {

@@ -20,6 +20,8 @@ class QSpinBox;
 
 namespace pellucid::gui {
 
+class SpacingFields;
+
 /// Begins with the layout in the file's name; guesses by the voxels follow, and a picture of what is chosen. For one
 /// file, or for all of a series, which are laid out alike.
 class RawDialog : public QDialog {
@@ -28,7 +30,8 @@ public:
     /// `paths` are not empty.
     explicit RawDialog(const QStringList& paths, QWidget* parent = nullptr);
     RawLayout layoutOfFile() const;
-    std::optional<double> missing() const; ///< value of voxels without data
+    std::optional<GridSpacing> spacing() const; ///< empty: 1 along each axis, of no unit
+    std::optional<double> missing() const;      ///< value of voxels without data
 
 private:
     void lookAtSizes(const QStringList& paths);
@@ -43,7 +46,7 @@ private:
     QStringList m_odd;                            // names of files of another size
     bool m_isPacked = false, m_isTouched = false; // by gzip, unpacking has not ended; by the user
     QSpinBox* m_dims[3];
-    QDoubleSpinBox* m_spacing[3];
+    SpacingFields* m_spacing;
     QComboBox *m_type, *m_endian;
     QDoubleSpinBox* m_skip; // a QSpinBox ends at 2 GiB
     QLineEdit* m_missing;

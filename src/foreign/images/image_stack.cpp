@@ -203,7 +203,7 @@ void ImageStack::noteMetadata() {
         m_notices.push_back(nameOf(m_otherSpacing) + " says another distance between pixels than " +
                             nameOf(m_files.front()) + ", which is taken for all pictures");
     if (!first.isApartKnown && first.spacing != Vec3(1))
-        m_notices.emplace_back("the files do not say how far slices are apart: 1 is taken");
+        m_notices.emplace_back("the files do not say how far slices are apart: 1 is taken unless you set the spacing");
     if (m_otherScaling.empty())
         m_order.scaling = first.scaling;
     else

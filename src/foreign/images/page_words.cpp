@@ -138,7 +138,8 @@ PageOrder orderOfImageJ(const FirstPage& page) {
     double& apart = distances.numbers.z;
     if (apart == 0 && distances.numbers.x != 1 && std::max(order.images, order.slices) > 1 && order.slices != 1)
         order.notices.emplace_back(
-            "the file does not say how far slices are apart, which ImageJ leaves out where it is 1: 1 is taken");
+            "the file does not say how far slices are apart, which ImageJ leaves out where it is 1: 1 is taken "
+            "unless you set the spacing");
     if (apart == 0) apart = 1;
     setSpacing(order, distances);
     setStepTime(order, lengthIn(fields["finterval"], 0), fields.contains("tunit") ? fields["tunit"] : "s");

@@ -8,7 +8,6 @@
 #include "volume/formats/file_check.h"
 #include "volume/formats/inflate_index.h"
 #include "volume/formats/reader.h"
-#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -27,8 +26,6 @@ std::uint64_t stepBytes(const VolumeSource& source) {
     if (layout.dims.x < 1 || layout.dims.y < 1 || layout.dims.z < 1)
         throw UsageError("a volume has at least one voxel along each axis", path, "correct the layout",
                          Remedy::CorrectRawLayout);
-    if (const std::string wrong = geometryProblem(layout.spacing, Vec3(0)); !wrong.empty())
-        throw UsageError(wrong, path, "correct it", Remedy::GiveSpacing);
     const std::int64_t sizes[] = {layout.dims.x, layout.dims.y, layout.dims.z};
     const std::uint64_t bytesPer = bytesPerSample(layout.type);
     return valueCount(path, sizes, bytesPer) * bytesPer;
@@ -99,7 +96,6 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     file.type = valueType(layout.type);
     file.bigEndian = layout.bigEndian;
     file.axes = {{layout.dims.x}, {layout.dims.y}, {layout.dims.z}, {steps}};
-    file.spacing = layout.spacing;
     return readSamples(source, file, job);
 }
 

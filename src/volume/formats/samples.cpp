@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -15,7 +16,7 @@
 #include <glm/matrix.hpp>
 
 #include "base/error.h"
-#include "base/large_pages.h"
+#include "base/zeroed_memory.h"
 #include "volume/formats/byte_source.h"
 #include "volume/formats/bzip2_bytes.h"
 #include "volume/formats/deflate_at_once.h"
@@ -373,7 +374,7 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
         length *= std::exchange(ny, 1);
         if (selection.stride[2] == size(1) * selection.stride[1]) length *= std::exchange(nz, 1);
     }
-    std::vector<Kept> kept = zerosInLargePages<Kept>(voxelCount(selection.dims));
+    ZeroedVector<Kept> kept(voxelCount(selection.dims));
     std::size_t done = 0;
     VoxelReader<T> reader(values, selection.stride[0]);
     ReadProgress progress(job, kept.size());
@@ -393,7 +394,7 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
 /// samples.
 template <class T>
 Collected collectPlain(Values& values, const Selection& selection, const JobControl& job) {
-    std::vector<T> kept = zerosInLargePages<T>(voxelCount(selection.dims));
+    ZeroedVector<T> kept(voxelCount(selection.dims));
     values.skip(selection.first);
     ReadProgress progress(job, kept.size());
     constexpr std::size_t kAtOnce = std::size_t{1} << 20;
@@ -415,8 +416,7 @@ std::optional<Collected> collectAtOnce(const FileLayout& layout, const Selection
         layout.open || layout.encoding != Encoding::Deflate || isInOtherOrder<T>(layout))
         return {};
     const std::size_t voxels = voxelCount(selection.dims);
-    std::vector<T> kept =
-        zerosInLargePages<T>(voxels + static_cast<std::size_t>((layout.skip + sizeof(T) - 1) / sizeof(T)));
+    ZeroedVector<T> kept(voxels + static_cast<std::size_t>((layout.skip + sizeof(T) - 1) / sizeof(T)));
     auto* const first = reinterpret_cast<char*>(kept.data());
     if (!unpackAtOnce(layout.dataPath, layout.start, layout.zlib, layout.unchecked->toEnd,
                       {first, static_cast<std::size_t>(bytes)}, job))
@@ -437,10 +437,8 @@ template <class T>
 class Rows {
 public:
     virtual ~Rows() = default;
-    /// Whether each row is followed by the next one, so that several can be read at once.
-    virtual bool areGapless() const { return false; }
-    /// The values of `count` voxels along x, from `first` on; of whole rows, more than one where areGapless().
-    virtual void read(const Int3& first, int count, T* to) = 0;
+    /// The values of `rows` rows of `count` voxels along x, from `first` on, one row behind the other.
+    virtual void read(const Int3& first, int count, int rows, T* to) = 0;
     /// Behind the last read: throws FileError unless what was read is sound.
     virtual void finish() {}
 };
@@ -450,23 +448,48 @@ class StoredRows final : public Rows<T> {
 public:
     StoredRows(std::unique_ptr<Values> values, const Selection& selection)
         : m_values(std::move(values)), m_selection(selection), m_reader(*m_values, selection.stride[0]) {}
-    void read(const Int3& first, int count, T* to) override {
+    void read(const Int3& first, int count, int rows, T* to) override {
         const auto& stride = m_selection.stride;
         std::uint64_t start = m_selection.first;
         for (int a = 0; a < 3; ++a) start += static_cast<std::uint64_t>(first[a]) * stride[static_cast<std::size_t>(a)];
         const auto length = static_cast<std::uint64_t>(count);
-        if (stride[0] == 1) return m_reader.readTo(to, start, length);
-        m_reader.readLine(start, length, [&](const T* piece, std::uint64_t voxels) {
-            for (std::uint64_t v = 0; v < voxels; ++v) *to++ = piece[v * stride[0]];
-        });
+        if (stride[0] == 1 && stride[1] == length)
+            return m_reader.readTo(to, start, length * static_cast<std::uint64_t>(rows));
+        // Rows that are close together: with what is between them, which is quicker than one by one.
+        const bool close = stride[0] == 1 && stride[1] <= 4 * length;
+        const int atOnce = close ? static_cast<int>(std::clamp<std::uint64_t>(kValuesAtOnce / stride[1], 1, 4096)) : 1;
+        for (int row = 0; row < rows; row += atOnce) {
+            const auto piece = static_cast<std::uint64_t>(std::min(atOnce, rows - row));
+            readSome(start + static_cast<std::uint64_t>(row) * stride[1], length, piece, to);
+            to += length * piece;
+        }
     }
-    bool areGapless() const override { return isGapless(m_selection); }
     void finish() override { m_values->finish(); }
 
 private:
+    static constexpr std::uint64_t kValuesAtOnce = (std::uint64_t{1} << 18) / sizeof(T); // they stay in the cache
+
+    /// `rows` rows of `length` voxels from the file's value `start` on.
+    void readSome(std::uint64_t start, std::uint64_t length, std::uint64_t rows, T* to) {
+        const auto& stride = m_selection.stride;
+        if (rows > 1) {
+            m_span.resize(static_cast<std::size_t>((rows - 1) * stride[1] + length));
+            m_reader.readTo(m_span.data(), start, m_span.size());
+            for (std::uint64_t row = 0; row < rows; ++row)
+                to = std::copy_n(m_span.data() + row * stride[1], length, to);
+        } else if (stride[0] == 1) {
+            m_reader.readTo(to, start, length);
+        } else {
+            m_reader.readLine(start, length, [&](const T* piece, std::uint64_t voxels) {
+                for (std::uint64_t v = 0; v < voxels; ++v) *to++ = piece[v * stride[0]];
+            });
+        }
+    }
+
     std::unique_ptr<Values> m_values;
     Selection m_selection;
     VoxelReader<T> m_reader;
+    std::vector<T> m_span; // rows with what is between them
 };
 
 /// Of a volume in pieces. A piece is open from its first row to its last one, unless there are too many: then it is
@@ -479,15 +502,8 @@ public:
         : m_whole(whole), m_job(job) {
         for (const FilePiece& piece : pieces) m_pieces.push_back({&piece, nullptr});
     }
-    void read(const Int3& first, int count, T* to) override {
-        if (first.z != m_layer) goToLayer(first.z);
-        for (Piece* piece : m_inLayer) {
-            const VoxelRegion& region = piece->file->region;
-            const int begin = std::max(first.x, region.lo.x), end = std::min(first.x + count, region.hi.x);
-            if (begin >= end || !hasRow(*piece, first.y)) continue;
-            if (!piece->rows) open(*piece, first.y);
-            piece->rows->read(Int3(begin, first.y, first.z) - piece->file->first, end - begin, to + (begin - first.x));
-        }
+    void read(const Int3& first, int count, int rows, T* to) override {
+        for (int row = 0; row < rows; ++row, to += count) readRow(first + Int3(0, row, 0), count, to);
     }
 
 private:
@@ -497,6 +513,17 @@ private:
         std::unique_ptr<StoredRows<T>> rows; ///< null: it is not open
     };
 
+    void readRow(const Int3& first, int count, T* to) {
+        if (first.z != m_layer) goToLayer(first.z);
+        for (Piece* piece : m_inLayer) {
+            const VoxelRegion& region = piece->file->region;
+            const int begin = std::max(first.x, region.lo.x), end = std::min(first.x + count, region.hi.x);
+            if (begin >= end || !hasRow(*piece, first.y)) continue;
+            if (!piece->rows) open(*piece, first.y);
+            piece->rows->read(Int3(begin, first.y, first.z) - piece->file->first, end - begin, 1,
+                              to + (begin - first.x));
+        }
+    }
     static bool hasRow(const Piece& piece, int y) {
         return y >= piece.file->region.lo.y && y < piece.file->region.hi.y;
     }
@@ -546,26 +573,34 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
                          const Convert& convert) {
     const Int3 lo = plan.region.lo, size = plan.region.hi - lo;
     // Padded, so that codes of 8 bits need no copy.
-    std::vector<Kept> kept = zerosInLargePages<Kept>(voxelCount(plan.dims) + SampleArray<Kept>::kPadding);
-    std::vector<Kept> row(static_cast<std::size_t>(size.x));
+    ZeroedVector<Kept> kept(voxelCount(plan.dims) + SampleArray<Kept>::kPadding);
+    const auto ofRow = static_cast<std::size_t>(size.x);
     const bool asItIs = plan.factors == Int3(1);
+    constexpr bool kAsStored = std::is_same_v<Convert, std::identity>;
     const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
-    constexpr int kVoxelsAtOnce = 1 << 20;
-    const bool several = asItIs && size.x == plan.excerpt.fullDims.x && rows.areGapless();
-    const int rowsAtOnce = several ? std::clamp(kVoxelsAtOnce / size.x, 1, size.y) : 1;
-    std::vector<T> values(row.size() * static_cast<std::size_t>(rowsAtOnce));
+    constexpr int kVoxelsAtOnce = 1 << 18;
+    const int rowsAtOnce = std::clamp(kVoxelsAtOnce / size.x, 1, size.y);
+    const std::size_t atOnce = ofRow * static_cast<std::size_t>(rowsAtOnce);
+    std::vector<T> values(kAsStored ? 0 : atOnce);
+    std::vector<Kept> converted(asItIs ? 0 : atOnce);
     LayerMeans<Kept> means({size.x, size.y}, plan.factors, missing);
     ReadProgress progress(job, voxelCount(size));
     for (int k = 0; k < size.z; ++k) {
         for (int j = 0; j < size.y; j += rowsAtOnce) {
-            const std::size_t count = row.size() * static_cast<std::size_t>(std::min(rowsAtOnce, size.y - j));
-            rows.read(lo + Int3(0, j, k), static_cast<int>(count), values.data());
+            const int count = std::min(rowsAtOnce, size.y - j);
+            const std::size_t voxels = ofRow * static_cast<std::size_t>(count);
             Kept* const to =
-                asItIs ? kept.data() + layer * static_cast<std::size_t>(k) + row.size() * static_cast<std::size_t>(j)
-                       : row.data();
-            std::transform(values.data(), values.data() + count, to, convert);
-            if (!asItIs) means.add(row.data(), j);
-            progress.add(count);
+                asItIs ? kept.data() + layer * static_cast<std::size_t>(k) + ofRow * static_cast<std::size_t>(j)
+                       : converted.data();
+            if constexpr (kAsStored) {
+                rows.read(lo + Int3(0, j, k), size.x, count, to);
+            } else {
+                rows.read(lo + Int3(0, j, k), size.x, count, values.data());
+                std::transform(values.data(), values.data() + voxels, to, convert);
+            }
+            for (int row = 0; row < count && !asItIs; ++row)
+                means.add(converted.data() + static_cast<std::size_t>(row) * ofRow, j + row);
+            progress.add(voxels);
         }
         if (asItIs) continue;
         if (k % plan.factors.z == plan.factors.z - 1 || k == size.z - 1)
@@ -626,6 +661,8 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
                    ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, job), plan, source.missing, job, convert)
                    : collect<T, Kept>(*openValues<T>(layout, Wanted::All, job), selection, job, convert);
     };
+    if constexpr (std::is_same_v<T, Kept>)
+        if (!layout.scaling) return read(std::identity());
     if (!layout.scaling) return read([](T value) { return static_cast<Kept>(value); });
     bool isBeyond = false;
     Collected scaled = read([scaling = *layout.scaling, &isBeyond](T value) {

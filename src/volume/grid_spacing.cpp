@@ -1,0 +1,81 @@
+#include "volume/grid_spacing.h"
+
+#include "base/error.h"
+#include "base/round_numbers.h"
+#include "base/text.h"
+#include "volume/excerpt.h"
+#include "volume/orientation.h"
+#include "volume/spacing.h"
+
+namespace pellucid {
+
+namespace {
+
+UsageError wrongSpacing(const std::string& problem) {
+    return {problem, "spacing", "give the distances of voxels along each axis, SX,SY,SZ, and a unit such as mm or um",
+            Remedy::GiveSpacing};
+}
+
+/// Voxels of the data to one of the volume, along each axis, and where its first one lies among those of the data.
+struct Coarseness {
+    Vec3 factors{1.0}, first{0.0};
+};
+
+Coarseness coarsenessOf(const Volume& volume) {
+    if (!volume.excerpt) return {};
+    const Excerpt& part = *volume.excerpt;
+    const Vec3 factors(planOf(part.region, part.fullDims, part.factor).factors);
+    return {factors, Vec3(part.region.lo) + 0.5 * (factors - 1.0)};
+}
+
+} // namespace
+
+GridSpacing parseGridSpacing(const std::string& text) {
+    const std::vector<std::string> parts = splitAt(',', text);
+    if (parts.size() < 3 || parts.size() > 4) throw wrongSpacing("'" + text + "' is not three distances");
+    GridSpacing spacing;
+    for (int a = 0; a < 3; ++a) {
+        const std::string& part = parts[static_cast<std::size_t>(a)];
+        if (!parseNumber(part, spacing.distances[a])) throw wrongSpacing("'" + part + "' is not a number");
+    }
+    if (const std::string wrong = geometryProblem(spacing.distances, Vec3(0)); !wrong.empty())
+        throw wrongSpacing(wrong);
+    if (parts.size() == 4) {
+        const auto unit = lengthUnitNamed(parts[3]);
+        if (!unit) throw wrongSpacing("'" + parts[3] + "' is not a unit of length");
+        spacing.unit = *unit;
+    }
+    return spacing;
+}
+
+std::string gridSpacingText(const GridSpacing& spacing) {
+    const Vec3& d = spacing.distances;
+    std::string text = exactText(d.x) + "," + exactText(d.y) + "," + exactText(d.z);
+    if (spacing.unit != LengthUnit::Unknown) text += "," + std::string(plainSign(spacing.unit));
+    return text;
+}
+
+GridSpacing spacingOfData(const Volume& volume) {
+    const Geometry& geometry = volume.geometry();
+    return {geometry.spacing / coarsenessOf(volume).factors, unitOf(geometry)};
+}
+
+Geometry withSpacing(const Volume& volume, const Geometry& geometry, const GridSpacing& spacing) {
+    Geometry made = geometry;
+    Vec3 distances = spacing.distances;
+    if (geometry.worldAxes == WorldAxes::Patient) {
+        for (int a = 0; a < 3; ++a) distances[a] = converted(distances[a], spacing.unit, unitOf(geometry));
+    } else if (spacing.unit != LengthUnit::Unknown) {
+        made = inUnit(made, spacing.unit);
+        made.lengthUnit = spacing.unit;
+    }
+    if (const std::string wrong = geometryProblem(distances, Vec3(0)); !wrong.empty()) throw wrongSpacing(wrong);
+    const auto [factors, first] = coarsenessOf(volume);
+    made.origin -= made.directions * (first * made.spacing / factors);
+    made.spacing = distances * factors;
+    made.origin += made.directions * (first * distances);
+    if (geometry.referenceLength > 0) made.referenceLength = glm::min(distances.x, glm::min(distances.y, distances.z));
+    return made;
+}
+
+} // namespace pellucid
