@@ -12,8 +12,7 @@ namespace pellucid {
 namespace {
 
 UsageError wrongSpacing(const std::string& problem) {
-    return {problem, "spacing", "give the distances of voxels along each axis, SX,SY,SZ, and a unit such as mm or um",
-            Remedy::GiveSpacing};
+    return {problem, "spacing", "give three distances, SX,SY,SZ, and perhaps their unit, such as mm or um"};
 }
 
 /// Voxels of the data to one of the volume, along each axis, and where its first one lies among those of the data.

@@ -125,6 +125,35 @@ TEST_CASE("a large raw file is mapped, and has the samples that reading it gives
     }
 }
 
+TEST_CASE("a region of a large raw file has the voxels of the whole, in either byte order", "[large]") {
+    const TempFolder folder;
+    const Int3 dims(230, 211, 225);
+    const VoxelRegion region{{1, 2, 3}, {229, 210, 224}}; // more than one window of 16 MiB
+    REQUIRE(voxelCount(region.hi - region.lo) * 2 > kMapBytes + (2u << 20));
+    auto values = mixed<std::uint16_t>(voxelCount(dims));
+    VolumeSource raw;
+    raw.path = folder.write("a.raw", "odd" + bytesOfValues(values));
+    raw.raw = RawLayout{dims, SampleType::U16, false, 3};
+    raw.region = region;
+    for (const bool bigEndian : {false, true}) {
+        CAPTURE(bigEndian);
+        raw.raw->bigEndian = bigEndian;
+        if (bigEndian)
+            for (std::uint16_t& v : values) v = static_cast<std::uint16_t>(v << 8 | v >> 8);
+        const auto samples = samplesOf<std::uint16_t>(loadVolume(raw));
+        REQUIRE(samples.size() == voxelCount(region.hi - region.lo));
+        std::size_t n = 0, wrong = 0;
+        for (int k = region.lo.z; k < region.hi.z; ++k)
+            for (int j = region.lo.y; j < region.hi.y; ++j)
+                for (int i = region.lo.x; i < region.hi.x; ++i)
+                    wrong += samples[n++] != values[voxelIndex(dims, i, j, k)];
+        CHECK(wrong == 0);
+    }
+    // One that is too short is refused, and not read beyond its end.
+    folder.write("a.raw", std::string(1000, 'x'));
+    CHECK_THROWS_AS(loadVolume(raw), FileError);
+}
+
 TEST_CASE("small files are read: they may change while they are in use", "[large]") {
     const TempFolder folder;
     VolumeSource source;

@@ -560,8 +560,69 @@ private:
     std::size_t m_open = 0;
 };
 
+/// Where each value is stored as it is in memory: raw, in this machine's byte order, in one file.
+bool isPlain(const FileLayout& layout) {
+    const bool native =
+        bytesPerValue(layout.type) == 1 || layout.bigEndian == (std::endian::native == std::endian::big);
+    return layout.encoding == Encoding::Raw && !layout.open && layout.parts.empty() && layout.pieces.empty() && native;
+}
+
+/// Of a large file whose values are stored as they are in memory: copied from a window of it that is mapped, so that
+/// what lies between the rows is not. Where a window cannot be mapped, rows are read.
 template <class T>
-std::unique_ptr<Rows<T>> openRows(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+class MappedRows final : public Rows<T> {
+public:
+    MappedRows(const FileLayout& layout, const Selection& selection, const VoxelRegion& region, const JobControl& job)
+        : m_layout(layout), m_selection(selection), m_job(job), m_end(byteOf(region.hi - 1) + sizeof(T)) {}
+    void read(const Int3& first, int count, int rows, T* to) override {
+        for (int row = 0; row < rows; ++row, to += count) {
+            const Int3 begin = first + Int3(0, row, 0);
+            const unsigned char* from = m_stored ? nullptr : at(begin, static_cast<std::uint64_t>(count) * sizeof(T));
+            if (from == nullptr) return stored().read(begin, count, rows - row, to);
+            std::memcpy(to, from, static_cast<std::size_t>(count) * sizeof(T));
+        }
+    }
+    void finish() override {
+        if (m_stored) m_stored->finish();
+    }
+
+private:
+    static constexpr std::uint64_t kWindow = 16u << 20; ///< bytes: they count where address space is limited
+
+    std::uint64_t byteOf(const Int3& voxel) const {
+        std::uint64_t value = m_selection.first;
+        for (std::size_t a = 0; a < 3; ++a)
+            value += static_cast<std::uint64_t>(voxel[static_cast<int>(a)]) * m_selection.stride[a];
+        return m_layout.start + value * sizeof(T);
+    }
+    const unsigned char* at(const Int3& voxel, std::uint64_t bytes) {
+        const std::uint64_t begin = byteOf(voxel);
+        if (!m_window || begin < m_begin || begin + bytes > m_begin + m_window->size()) {
+            m_window.reset(); // before there is another one
+            m_window = MappedFile::map(m_layout.dataPath, begin, std::min(std::max(bytes, kWindow), m_end - begin));
+            m_begin = begin;
+        }
+        return m_window ? m_window->data() + (begin - m_begin) : nullptr;
+    }
+    StoredRows<T>& stored() {
+        if (!m_stored)
+            m_stored = std::make_unique<StoredRows<T>>(openValues<T>(m_layout, Wanted::Some, m_job), m_selection);
+        return *m_stored;
+    }
+
+    const FileLayout& m_layout;
+    const Selection m_selection;
+    const JobControl& m_job;
+    std::uint64_t m_end, m_begin = 0; // bytes of the file: behind the last one, and where the window begins
+    std::shared_ptr<const MappedFile> m_window;
+    std::unique_ptr<StoredRows<T>> m_stored;
+};
+
+template <class T>
+std::unique_ptr<Rows<T>> openRows(const FileLayout& layout, const Selection& selection, const VoxelRegion& region,
+                                  const JobControl& job) {
+    if (isPlain(layout) && selection.stride[0] == 1 && voxelCount(region.hi - region.lo) * sizeof(T) >= kMapBytes)
+        return std::make_unique<MappedRows<T>>(layout, selection, region, job);
     if (layout.pieces.empty())
         return std::make_unique<StoredRows<T>>(openValues<T>(layout, Wanted::Some, job), selection);
     return std::make_unique<PieceRows<T>>(layout.pieces, selection, job);
@@ -610,12 +671,11 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
     return {SampleArray<Kept>(std::move(kept), voxelCount(plan.dims)), asItIs ? ValueRange{0, -1} : means.range()};
 }
 
-/// Where the samples can be used as they lie in the file: raw, in this machine's byte order, one after the other.
+/// Where the samples can be used as they lie in the file.
 bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
     const auto bytes = bytesPerValue(layout.type);
-    const bool native = bytes == 1 || layout.bigEndian == (std::endian::native == std::endian::big);
-    return layout.encoding == Encoding::Raw && !layout.open && layout.parts.empty() && layout.pieces.empty() &&
-           native && !layout.scaling && isGapless(selection) && (layout.start + selection.first * bytes) % bytes == 0;
+    return isPlain(layout) && !layout.scaling && isGapless(selection) &&
+           (layout.start + selection.first * bytes) % bytes == 0;
 }
 
 /// The samples of whole layers as they lie in a large file; empty where that cannot be.
@@ -657,9 +717,9 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
             return collectPlain<T>(*openValues<T>(layout, Wanted::All, job), selection, job);
         }
     const auto read = [&](const auto& convert) {
-        return byRows
-                   ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, job), plan, source.missing, job, convert)
-                   : collect<T, Kept>(*openValues<T>(layout, Wanted::All, job), selection, job, convert);
+        return byRows ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, plan.region, job), plan, source.missing,
+                                                job, convert)
+                      : collect<T, Kept>(*openValues<T>(layout, Wanted::All, job), selection, job, convert);
     };
     if constexpr (std::is_same_v<T, Kept>)
         if (!layout.scaling) return read(std::identity());
