@@ -140,7 +140,7 @@ std::string lineOf(const Error& e) {
         case Remedy::CorrectRawLayout:
             return "correct --raw or --skip" + likelyLayout(e.where());
         case Remedy::GiveSpacing:
-            return said + "give --spacing SX,SY,SZ";
+            return said + "give --spacing SX,SY,SZ[,UNIT]";
         case Remedy::NoComponent:
             return "leave out --component";
         case Remedy::AllowOutside:

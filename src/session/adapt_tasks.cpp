@@ -39,12 +39,15 @@ void addSource(Hash& hash, const VolumeSource& source) {
     hash.addAll(source.step, source.array);
     if (source.raw) {
         const RawLayout& raw = *source.raw;
-        hash.addAll(raw.dims.x, raw.dims.y, raw.dims.z, static_cast<int>(raw.type), raw.bigEndian, raw.skipBytes);
+        const GridSpacing spacing = source.spacing.value_or(GridSpacing());
+        hash.addAll(raw.dims.x, raw.dims.y, raw.dims.z, static_cast<int>(raw.type), raw.bigEndian, raw.skipBytes,
+                    spacing.distances.x, spacing.distances.y, spacing.distances.z);
     }
     hash.addAll(source.missing.value_or(std::nan("")), source.component, source.sampleSize,
                 static_cast<int>(source.seed), source.downsample);
     if (source.axes) hash.add(gridAxesText(*source.axes));
-    if (source.spacing) hash.add(gridSpacingText(*source.spacing));
+    if (source.spacing && (!source.raw || source.spacing->unit != LengthUnit::Unknown))
+        hash.add(gridSpacingText(*source.spacing));
     if (source.region)
         for (int a = 0; a < 3; ++a) hash.addAll(source.region->lo[a], source.region->hi[a]);
 }

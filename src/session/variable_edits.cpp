@@ -314,16 +314,41 @@ void placeData(Session& session, const Volume& volume, const std::optional<GridA
                     ruler.points = boxRuler(ruler.points.front(), ruler.points.back()).points;
             }
         });
-    if (!session.clipping->planes.empty() || !session.clipping->rest.within.planes.empty())
-        session.clipping.edit([&](Clipping& clipping) {
-            for (std::vector<ClipPlane>* planes : {&clipping.planes, &clipping.rest.within.planes})
-                for (ClipPlane& plane : *planes) {
-                    const Vec3 on = moved(plane.normal * (plane.offset / glm::dot(plane.normal, plane.normal)));
-                    const Vec3 normal = glm::transpose(glm::inverse(turn)) * plane.normal;
-                    plane.normal = normal * (glm::length(plane.normal) / glm::length(normal));
-                    plane.offset = glm::dot(plane.normal, on);
-                }
+    const auto movePlanes = [&](Clipping& clipping) {
+        for (std::vector<ClipPlane>* planes : {&clipping.planes, &clipping.rest.within.planes})
+            for (ClipPlane& plane : *planes) {
+                const Vec3 on = moved(plane.normal * (plane.offset / glm::dot(plane.normal, plane.normal)));
+                const Vec3 normal = glm::transpose(glm::inverse(turn)) * plane.normal;
+                plane.normal = normal * (glm::length(plane.normal) / glm::length(normal));
+                plane.offset = glm::dot(plane.normal, on);
+            }
+    };
+    const auto moveCamera = [&](Camera& camera) {
+        camera = cameraOfSpaced(camera, volume.geometry(), after.geometry());
+    };
+    session.clipping.edit(movePlanes);
+    if (!session.keyframes->empty())
+        session.keyframes.edit([&](Keyframes& keys) {
+            for (Keyframe& key : keys) {
+                moveCamera(key.state.camera);
+                movePlanes(key.state.clipping);
+            }
         });
+    if (session.comparison->b)
+        session.comparison.edit([&](ComparisonView& view) {
+            if (view.b->camera) moveCamera(*view.b->camera);
+            view.b->clipping.edit(movePlanes);
+        });
+}
+
+Camera cameraOfSpaced(const Camera& camera, const Geometry& before, const Geometry& after) {
+    if (before.spacing == after.spacing) return camera;
+    Camera moved = camera;
+    const double scale = after.radius() / before.radius();
+    moved.center = after.worldFromVoxel(before.voxelFromWorld(camera.center));
+    moved.eye = moved.center + scale * (camera.eye - camera.center);
+    moved.height *= scale;
+    return moved;
 }
 
 std::optional<int> featureFrames(const Session& session) {

@@ -63,10 +63,12 @@ void setDataSource(Session& session, const VolumeSource& source);
 /// How the axes of the data of all variables run, and how far their voxels are apart; empty: as their files say.
 void setDataAxes(Session& session, const std::optional<GridAxes>& axes);
 void setDataSpacing(Session& session, const std::optional<GridSpacing>& spacing);
-/// Both, of which the present data are `volume`: measures and clipping planes go along with them. Throws UsageError as
-/// withSpacing() does.
+/// Both, of which the present data are `volume`: measures and clipping planes go along with them, and so do keyframes
+/// and the state that is compared with. Throws UsageError as withSpacing() does.
 void placeData(Session& session, const Volume& volume, const std::optional<GridAxes>& axes,
                const std::optional<GridSpacing>& spacing);
+/// The camera that stands to a grid as `camera` did before its voxels were as far apart as they are in `after`.
+Camera cameraOfSpaced(const Camera& camera, const Geometry& before, const Geometry& after);
 
 /// Colours, opacities or range of another transfer function in the place of those of the session; a range becomes the
 /// window of the variable. `window`: the present one, for a transfer function that says of no values; nothing happens

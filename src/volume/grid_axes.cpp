@@ -129,9 +129,12 @@ Volume withPlacement(const Volume& volume, const std::optional<GridAxes>& axes,
     const Geometry inFile = volume.inFile.value_or(volume.geometry());
     Geometry geometry = spacing ? withSpacing(volume, inFile, *spacing) : inFile;
     if (axes) {
+        if (axes->patient) // whose lengths are millimetres
+            geometry = inUnit(geometry, LengthUnit::Millimetre);
+        else // and remain so
+            geometry.lengthUnit = unitOf(geometry);
         const Vec3 middle = middleOfData(volume), place = geometry.worldFromVoxel(middle);
         geometry.directions = directionsOf(*axes);
-        if (!axes->patient) geometry.lengthUnit = unitOf(geometry); // millimetres stay millimetres
         geometry.worldAxes = axes->patient ? WorldAxes::Patient : WorldAxes::File;
         geometry.origin += place - geometry.worldFromVoxel(middle);
     }

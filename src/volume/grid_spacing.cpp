@@ -34,7 +34,7 @@ GridSpacing parseGridSpacing(const std::string& text) {
     if (parts.size() < 3 || parts.size() > 4) throw wrongSpacing("'" + text + "' is not three distances");
     GridSpacing spacing;
     for (int a = 0; a < 3; ++a) {
-        const std::string& part = parts[static_cast<std::size_t>(a)];
+        const std::string part = trimmed(parts[static_cast<std::size_t>(a)]);
         if (!parseNumber(part, spacing.distances[a])) throw wrongSpacing("'" + part + "' is not a number");
     }
     if (const std::string wrong = geometryProblem(spacing.distances, Vec3(0)); !wrong.empty())

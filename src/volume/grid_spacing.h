@@ -1,4 +1,4 @@
-// The distances of a grid's voxels where its file does not state them, or states them wrongly: told by the user.
+// The distances of a grid's voxels where its file does not state them, or states them wrongly: as the user has them.
 #pragma once
 
 #include <string>

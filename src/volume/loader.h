@@ -47,7 +47,7 @@ struct VolumeSource {
     std::optional<ValueRange> range;    ///< the user's intensity window
     int component = 0;                  ///< of a multi-component file
     std::optional<GridAxes> axes;       ///< how i, j, k run, whatever the file says; empty: as it says
-    std::optional<GridSpacing> spacing; ///< likewise how far voxels are apart; empty and headerless: 1
+    std::optional<GridSpacing> spacing; ///< likewise their distances; empty: as it says, 1 if headerless
     int sampleSize = 0;                 ///< --size of a sample, 0 = its default
     std::uint32_t seed = 1;             ///< of a sample
     /// Each voxel is the mean of so many along each axis (see excerpt.h). 1: all voxels, or an error where memory has

@@ -515,12 +515,15 @@ TEST_CASE("a picture that is missing in a folder is named", "[images]") {
 }
 
 TEST_CASE("pictures of a folder are as far apart as they say", "[images]") {
-    const auto load = [](const std::vector<std::pair<std::string, int>>& files) {
+    const auto load = [](const std::vector<std::pair<std::string, int>>& files,
+                         const std::optional<GridSpacing>& spacing = {}) {
         const TempFolder folder;
         fs::create_directory(folder.path("slices"));
         for (std::size_t n = 0; n < files.size(); ++n)
             folder.write("slices/s" + std::to_string(n) + ".tif", tiffFile(pages(1, files[n].first, files[n].second)));
-        return loadVolume(at(folder.path("slices")));
+        VolumeSource source = at(folder.path("slices"));
+        source.spacing = spacing;
+        return loadVolume(source);
     };
     const std::string imageJ = "ImageJ=1.53t\nunit=micron\n";
     // 4 pixels to a micrometre.
@@ -530,6 +533,9 @@ TEST_CASE("pictures of a folder are as far apart as they say", "[images]") {
     const Volume open = load({{imageJ, 4}, {imageJ, 4}});
     CHECK(open.geometry().spacing == Vec3(0.25, 0.25, 1));
     CHECK(hasNotice(open, "do not say how far slices are apart: 1 is taken"));
+    const Volume told = load({{imageJ, 4}, {imageJ, 4}}, GridSpacing{{0.25, 0.25, 2}});
+    CHECK(told.geometry().spacing == Vec3(0.25, 0.25, 2));
+    CHECK(told.notices.empty());
     for (const auto& other : {std::pair(imageJ, 5), std::pair(std::string(), 4)}) {
         const Volume differ = load({{imageJ, 4}, {imageJ, 4}, other});
         CHECK(differ.geometry().spacing == Vec3(0.25, 0.25, 1));

@@ -192,6 +192,13 @@ TEST_CASE("who says how far voxels are apart gets a volume, measures and a scale
     CHECK(distance(w.services().scene().camera, before) == Approx(distance(camera, before)).epsilon(0.01));
     trigger(w, "redoAction");
     CHECK(geometryOf(w).spacing == after.spacing);
+    // What is opened anew is seen as it is opened.
+    const Scene spaced = w.services().scene();
+    trigger(w, "undoAction");
+    store.open(spaced);
+    w.settle();
+    CHECK(w.services().scene().camera == spaced.camera);
+    CHECK_FALSE(store.canUndoCamera());
     trigger(w, "spacingOfFileAction");
     CHECK(geometryOf(w).spacing == before.spacing);
     CHECK_FALSE(ofFile.isEnabled());

@@ -269,8 +269,10 @@ TEST_CASE("measures and clipping planes go along with data that are turned", "[v
         for (int axis = 0; axis < 3; ++axis)
             CHECK(s.rulers->front().points[p][axis] == Approx(old.rulers->front().points[p][axis]));
 
-    // With other distances, measures and planes stay at their voxels, too.
+    // With other distances, measures and planes stay at their voxels, too, and keyframes see the same part of the data.
     const GridSpacing spacing{{0.5, 0.5, 4}};
+    const Camera camera = cameraFromView(g, 30, 20, 1, Projection::Perspective);
+    s.keyframes.edit([&](Keyframes& keys) { keys.emplace_back().state.camera = camera; });
     placeData(s, before, {}, spacing);
     CHECK((*s.variables)[0].source.spacing == spacing);
     CHECK_FALSE((*s.variables)[2].source.spacing);
@@ -282,5 +284,8 @@ TEST_CASE("measures and clipping planes go along with data that are turned", "[v
         for (int j = 0; j < g.dims.y; ++j)
             for (int i = 0; i < g.dims.x; ++i)
                 CHECK(pellucid::keeps(oldPlanes, Vec3(i, j, k)) == pellucid::keeps(spacedPlanes, Vec3(i, j, k)));
+    const Camera expected = cameraFromView(spaced, 30, 20, 1, Projection::Perspective);
+    CHECK(glm::distance(s.keyframes->front().state.camera.eye, expected.eye) < 1e-9 * spaced.radius());
+    CHECK(glm::distance(s.keyframes->front().state.camera.center, expected.center) < 1e-9 * spaced.radius());
     CHECK(glm::length(s.clipping->planes.front().normal) == Approx(glm::length(Vec3(1, 2, 3))));
 }

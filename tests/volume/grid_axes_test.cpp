@@ -121,6 +121,7 @@ TEST_CASE("a spacing is written as three distances and a unit", "[orientation]")
     CHECK(parseGridSpacing("0.2,0.25,1") == GridSpacing{{0.2, 0.25, 1}});
     CHECK(parseGridSpacing("0.2,0.25,1,um") == GridSpacing{{0.2, 0.25, 1}, LengthUnit::Micrometre});
     CHECK(parseGridSpacing("1,1,2,inches").unit == LengthUnit::Inch);
+    CHECK(parseGridSpacing("1, 2, 3, um") == parseGridSpacing("1,2,3,um"));
     for (const char* text : {"0.1,2,3e-09", "1,1,1,nm", "0.5,0.25,2,in"})
         CHECK(gridSpacingText(parseGridSpacing(text)) == text);
     for (const char* text :
@@ -180,7 +181,12 @@ TEST_CASE("a spacing is in the unit of the file unless it names one", "[orientat
     CHECK(unitOf(fine) == LengthUnit::Micrometre);
     CHECK(fine.spacing == Vec3(1, 2, 3));
     CHECK(fine.origin.x == Approx(3000));
-    // Those of a patient are millimetres.
+    // Those of a patient are millimetres, also where the user says that the data are one's.
+    const Geometry named =
+        withPlacement(Volume(g, samples), parseGridAxes("LPS"), parseGridSpacing("200,200,1000,um")).geometry();
+    CHECK(unitOf(named) == LengthUnit::Millimetre);
+    checkNear(named.spacing, {0.2, 0.2, 1});
+    checkNear(named.boxCenter(), {3 + 0.1, 0.1, 0.5});
     g.worldAxes = WorldAxes::Patient;
     g.lengthUnit = LengthUnit::Unknown;
     const Geometry patient = placed("1,2,3,cm");

@@ -91,11 +91,11 @@ void set(Session& session, const std::string& key, const std::string& value) {
 } // namespace
 
 void VariableOptions::add(CLI::App& app) {
-    addRepeated(
-        app, "--variable", "NAME=SPEC", variables, parseNamed,
-        "another variable beside VOLUME, which is x: a file or series like VOLUME (--raw and --missing are of all), "
-        "or made of another one: gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME; repeatable",
-        kGroup);
+    addRepeated(app, "--variable", "NAME=SPEC", variables, parseNamed,
+                "another variable beside VOLUME, which is x: a file or series like VOLUME (--raw, --spacing, --axes "
+                "and --missing are of all), "
+                "or made of another one: gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME; repeatable",
+                kGroup);
     addValue(
         app, kHsb, "CHANNELS", hsb, anyText,
         "colours by variables in place of the transfer function's: alpha=, saturation=, brightness=, hue= (a variable, "

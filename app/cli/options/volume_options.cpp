@@ -75,8 +75,8 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
         [this](const std::string& text, const std::string& option) {
             spacing = atOption(option + " " + text, [&] { return parseGridSpacing(text); });
         },
-        "distances between voxels, whatever the file says, in its unit of length or in UNIT: nm um mm cm m in "
-        "(default: the file's; 1,1,1 of --raw data)",
+        "distances between voxels, whatever the file says, in its unit of length or in UNIT, such as nm, um or mm "
+        "(default: the file's; 1,1,1 for --raw data)",
         kGroup);
     addValue(app, "--skip", "BYTES", skipBytes, wholeFrom<std::uint64_t>(0, std::numeric_limits<long long>::max()),
              "bytes before the --raw data", kGroup);

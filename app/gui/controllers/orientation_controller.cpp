@@ -1,5 +1,7 @@
 #include "controllers/orientation_controller.h"
 
+#include <utility>
+
 #include <QMessageBox>
 
 #include <glm/common.hpp>
@@ -27,8 +29,9 @@ OrientationController::OrientationController(Services& services, OpenController&
     connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.data == after.data) return;
         tell();
-        follow(before, after);
+        noteSpacing(before, after);
     });
+    connect(&services.store(), &SessionStore::historyChanged, this, &OrientationController::follow);
     connect(&opening, &OpenController::opened, this, &OrientationController::tell); // its notices have taken this away
 }
 
@@ -104,23 +107,24 @@ void OrientationController::tell() {
     notices.add({m_told, {{tr("Reset to file orientation"), [this] { set(tr("Reset to file orientation"), {}); }}}});
 }
 
-void OrientationController::follow(const Scene& before, const Scene& after) {
+void OrientationController::noteSpacing(const Scene& before, const Scene& after) {
+    m_spaced.reset();
     if (!before.data || !after.data || before.session.isEmpty() || after.session.isEmpty()) return;
     const VolumeSource &was = dataVariable(before.session).source, &is = dataVariable(after.session).source;
     const Geometry &from = before.data->geometry(), &to = after.data->geometry();
-    if (was.spacing == is.spacing || was.path != is.path || from.dims != to.dims || from.spacing == to.spacing) return;
-    Camera camera = after.camera;
-    const double scale = to.radius() / from.radius();
-    const Vec3 center = to.worldFromVoxel(from.voxelFromWorld(camera.center));
-    camera.eye = center + scale * (camera.eye - camera.center);
-    camera.center = center;
-    camera.height *= scale;
-    m_services.store().setCamera(camera);
+    if (was.spacing != is.spacing && was.path == is.path && from.dims == to.dims) m_spaced = {from, to};
+}
+
+void OrientationController::follow() {
+    SessionStore& store = m_services.store();
+    const auto spaced = std::exchange(m_spaced, {});
+    if (!spaced || (!store.canUndo() && !store.canRedo())) return; // it is no step: it has just been opened
+    store.setCamera(cameraOfSpaced(m_services.scene().camera, spaced->first, spaced->second));
 }
 
 void OrientationController::place(const QString& text, const std::optional<GridAxes>& axes,
                                   const std::optional<GridSpacing>& spacing) {
-    m_services.attempt(tr("Cannot set this spacing"), [&] {
+    m_services.attempt(tr("The data cannot lie like that"), [&] {
         withPlacement(*m_services.scene().data, axes, spacing); // which tells what cannot be
         const auto change = [axes, spacing, data = m_services.scene().data](Session& session) {
             placeData(session, *data, axes, spacing);

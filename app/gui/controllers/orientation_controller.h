@@ -2,6 +2,9 @@
 // voxels are apart.
 #pragma once
 
+#include <optional>
+#include <utility>
+
 #include <QObject>
 
 #include "volume/grid_axes.h"
@@ -33,8 +36,9 @@ private:
     void turn(const QString& text, const Vec3& about);
     void mirror(const Vec3& along);
     void tell(); ///< as long as the data do not lie as the file says
-    /// The camera keeps its place relative to data whose voxels are farther apart now.
-    void follow(const Scene& before, const Scene& after);
+    void noteSpacing(const Scene& before, const Scene& after);
+    /// After a step, undone or done: the camera keeps its place relative to data whose voxels are farther apart now.
+    void follow();
     const VolumeSource& source() const;
     void set(const QString& text, const std::optional<GridAxes>& axes); ///< empty: as the file says
     void setSpacing(const QString& text, const std::optional<GridSpacing>& spacing);
@@ -42,7 +46,8 @@ private:
 
     Services& m_services;
     OpenController& m_opening;
-    QString m_told; ///< the notice that is shown
+    QString m_told;                                        ///< the notice that is shown
+    std::optional<std::pair<Geometry, Geometry>> m_spaced; ///< before and after a step that may be one
 };
 
 } // namespace pellucid::gui

@@ -105,7 +105,7 @@ RawDialog::RawDialog(const QStringList& paths, QWidget* parent)
     form->addRow(tr("Voxels"), rowOf({m_dims[0], m_dims[1], m_dims[2]}));
     form->addRow(tr("Type"), m_type);
     form->addRow(tr("Byte order"), m_endian);
-    m_spacing = new SpacingFields(this);
+    m_spacing = new SpacingFields(this, tr("not known"));
     m_spacing->addTo(*form);
     form->addRow(tr("Skip"), m_skip);
     form->addRow(tr("Missing value"), m_missing);

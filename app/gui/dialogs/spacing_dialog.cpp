@@ -18,11 +18,11 @@ class LengthBox : public QDoubleSpinBox {
 public:
     explicit LengthBox(QWidget* parent) : QDoubleSpinBox(parent) {
         setDecimals(12);
-        setRange(kLeastSpacing, 1e12);
+        setRange(kLeastSpacing, kMostSpacing);
         setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     }
     QString textFromValue(double length) const override {
-        QString text = locale().toString(length, 'f', decimals());
+        QString text = locale().toString(length, 'f', decimals()).remove(locale().groupSeparator());
         while (text.endsWith(locale().zeroDigit())) text.chop(1);
         if (text.endsWith(locale().decimalPoint())) text.chop(1);
         return text;
@@ -31,18 +31,19 @@ public:
 
 } // namespace
 
-SpacingFields::SpacingFields(QWidget* parent) : QObject(parent) {
+SpacingFields::SpacingFields(QWidget* parent, const QString& noUnit) : QObject(parent) {
     for (std::size_t a = 0; a < 3; ++a) {
         const QChar axis = "xyz"[a];
-        QDoubleSpinBox* box = named<QDoubleSpinBox>(new LengthBox(parent), QStringLiteral("spacing") + axis.toUpper(),
-                                                    tr("Distance from one voxel to the next along %1").arg(axis));
+        QDoubleSpinBox* box =
+            named<QDoubleSpinBox>(new LengthBox(parent), QStringLiteral("spacing") + axis.toUpper(),
+                                  tr("Distance from one voxel to the next along axis %1 of the data").arg(axis));
         box->setAccessibleName(tr("Spacing along %1").arg(axis));
         box->setPrefix(QStringLiteral("%1  ").arg(axis));
         m_distances[a] = box;
     }
     m_unit = named(new QComboBox(parent), "spacingUnit", tr("The unit of these distances, for scale bar and measures"));
     m_unit->setAccessibleName(tr("Unit of length"));
-    m_unit->addItem(tr("not known"), static_cast<int>(LengthUnit::Unknown));
+    m_unit->addItem(noUnit, static_cast<int>(LengthUnit::Unknown));
     for (int unit = static_cast<int>(LengthUnit::Femtometre); unit <= static_cast<int>(LengthUnit::Foot); ++unit)
         m_unit->addItem(QString::fromUtf8(sign(static_cast<LengthUnit>(unit))), unit);
     setValue({});
@@ -79,7 +80,7 @@ SpacingDialog::SpacingDialog(const GridSpacing& now, QWidget* parent) : QDialog(
     auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});
     form->setVerticalSpacing(9);
     form->addRow(what);
-    m_fields = new SpacingFields(this);
+    m_fields = new SpacingFields(this, tr("as in the file"));
     m_fields->addTo(*form);
     m_fields->setValue(now);
     form->addRow(closingButtons(*this, QDialogButtonBox::Ok | QDialogButtonBox::Cancel));

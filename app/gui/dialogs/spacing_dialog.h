@@ -17,7 +17,8 @@ namespace pellucid::gui {
 class SpacingFields : public QObject {
     Q_OBJECT
 public:
-    explicit SpacingFields(QWidget* parent);
+    /// `noUnit`: what it is called where no unit is chosen.
+    SpacingFields(QWidget* parent, const QString& noUnit);
     void addTo(QFormLayout& form);
     void setValue(const GridSpacing& spacing);
     GridSpacing value() const;
