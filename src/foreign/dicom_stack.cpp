@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/round_numbers.h"
 #include "volume/formats/samples.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -263,8 +264,7 @@ void placeGrid(DicomStack& stack, const std::vector<DicomFrame>& frames, const P
     if (!isPlaced) geometry.lengthUnit = LengthUnit::Millimetre; // as DICOM has it, wherever that is
     if (!first.spacing)
         stack.notices.emplace_back(
-            "the files do not say how far pixels are from each other: 1 mm is taken unless you set "
-            "the spacing");
+            std::string("the files do not say how far pixels are from each other: 1 mm is taken") + kUnlessSet);
     if (slices.size() > 1 && !places.areKnown)
         stack.notices.emplace_back(
             "the files do not say where slices lie: they are shown in the order of their numbers, " +

@@ -28,6 +28,13 @@ ExcerptPlan planOf(const VoxelRegion& region, const Int3& full, int factor) {
     return plan;
 }
 
+PlaceInData placeInData(const Volume& volume) {
+    if (!volume.excerpt) return {};
+    const Excerpt& part = *volume.excerpt;
+    const Vec3 factors(planOf(part.region, part.fullDims, part.factor).factors);
+    return {Vec3(part.region.lo) + 0.5 * (factors - 1.0), factors};
+}
+
 Geometry ExcerptPlan::geometryOf(const Geometry& full) const {
     Geometry geometry = full;
     geometry.dims = dims;

@@ -66,6 +66,12 @@ private:
     ValueRange m_range;
 };
 
+/// Voxel v of a volume lies at `first` + v·`factors` among the voxels of its data.
+struct PlaceInData {
+    Vec3 first{0.0}, factors{1.0};
+};
+PlaceInData placeInData(const Volume& volume);
+
 /// The same part of a volume in memory, with its missing value, title and format; the window stays that of `whole`.
 /// Throws Cancelled.
 Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job = {});

@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "base/error.h"
+#include "volume/excerpt.h"
 #include "volume/orientation.h"
 
 namespace pellucid {
@@ -38,9 +39,8 @@ Mat3 directionsOf(const GridAxes& axes) {
 
 /// The middle of all data that a volume is made of, in its own voxel coordinates.
 Vec3 middleOfData(const Volume& volume) {
-    if (!volume.excerpt) return 0.5 * (Vec3(volume.dims()) - 1.0);
-    const Excerpt& part = *volume.excerpt;
-    return (0.5 * Vec3(part.fullDims) - Vec3(part.region.lo)) / static_cast<double>(part.factor) - 0.5;
+    const auto [first, factors] = placeInData(volume);
+    return (0.5 * (Vec3(volume.excerpt ? volume.excerpt->fullDims : volume.dims()) - 1.0) - first) / factors;
 }
 
 } // namespace

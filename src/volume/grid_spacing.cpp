@@ -15,18 +15,6 @@ UsageError wrongSpacing(const std::string& problem) {
     return {problem, "spacing", "give three distances, SX,SY,SZ, and perhaps their unit, such as mm or um"};
 }
 
-/// Voxels of the data to one of the volume, along each axis, and where its first one lies among those of the data.
-struct Coarseness {
-    Vec3 factors{1.0}, first{0.0};
-};
-
-Coarseness coarsenessOf(const Volume& volume) {
-    if (!volume.excerpt) return {};
-    const Excerpt& part = *volume.excerpt;
-    const Vec3 factors(planOf(part.region, part.fullDims, part.factor).factors);
-    return {factors, Vec3(part.region.lo) + 0.5 * (factors - 1.0)};
-}
-
 } // namespace
 
 GridSpacing parseGridSpacing(const std::string& text) {
@@ -56,7 +44,7 @@ std::string gridSpacingText(const GridSpacing& spacing) {
 
 GridSpacing spacingOfData(const Volume& volume) {
     const Geometry& geometry = volume.geometry();
-    return {geometry.spacing / coarsenessOf(volume).factors, unitOf(geometry)};
+    return {geometry.spacing / placeInData(volume).factors, unitOf(geometry)};
 }
 
 Geometry withSpacing(const Volume& volume, const Geometry& geometry, const GridSpacing& spacing) {
@@ -69,7 +57,7 @@ Geometry withSpacing(const Volume& volume, const Geometry& geometry, const GridS
         made.lengthUnit = spacing.unit;
     }
     if (const std::string wrong = geometryProblem(distances, Vec3(0)); !wrong.empty()) throw wrongSpacing(wrong);
-    const auto [factors, first] = coarsenessOf(volume);
+    const auto [first, factors] = placeInData(volume);
     made.origin -= made.directions * (first * made.spacing / factors);
     made.spacing = distances * factors;
     made.origin += made.directions * (first * distances);

@@ -11,6 +11,7 @@
 #include "volume/procedural.h"
 #include "volume/process/reader_process.h"
 #include "volume/series.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -197,8 +198,8 @@ Volume loadHere(const VolumeSource& source, const JobControl& job) {
         volume.notices.push_back(
             (volume.invalidCount() > 0 ? "all valid voxels have the value " : "all voxels have the value ") +
             exactText(volume.dataRange().lo));
-    if (source.spacing) // what readers say of spacings that files leave out
-        std::erase_if(volume.notices, [](const std::string& s) { return s.ends_with("unless you set the spacing"); });
+    if (source.spacing)
+        std::erase_if(volume.notices, [](const std::string& notice) { return notice.ends_with(kUnlessSet); });
     if (source.axes || source.spacing) volume = withPlacement(volume, source.axes, source.spacing);
     if (source.range) volume = volume.withRange(*source.range);
     job.report(1.0);

@@ -15,4 +15,7 @@ inline constexpr double kLeastSpacing = 1e-12, kMostSpacing = 1e24;
 /// spacing of axis 1 is 0, it must be positive and finite". Empty where nothing is.
 std::string geometryProblem(const Vec3& spacing, const Vec3& origin);
 
+/// How readers end what they say of a distance that a file leaves out, which is no longer so where the user sets it.
+inline constexpr const char* kUnlessSet = " unless you set the spacing";
+
 } // namespace pellucid

@@ -102,6 +102,8 @@ TEST_CASE("parts and coarser copies of turned data lie where they lay in the who
     const Geometry coarse = loadVolume(source).geometry();
     // Voxel 1 along each axis is the mean of voxels 2 and 3 of the part, 5 and 6 of the whole along i.
     checkNear(coarse.worldFromVoxel({1, 1, 1}), whole.worldFromVoxel({5.5, 4.5, 7.5}));
+    source.region = VoxelRegion{{3, 2, 5}, {19, 12, 6}}; // of its one layer each voxel is one voxel thick
+    checkNear(loadVolume(source).geometry().worldFromVoxel({1, 1, 0}), whole.worldFromVoxel({5.5, 4.5, 5}));
 }
 
 TEST_CASE("lengths of a patient stay millimetres where the axes are called the file's", "[orientation]") {

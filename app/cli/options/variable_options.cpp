@@ -93,8 +93,8 @@ void set(Session& session, const std::string& key, const std::string& value) {
 void VariableOptions::add(CLI::App& app) {
     addRepeated(app, "--variable", "NAME=SPEC", variables, parseNamed,
                 "another variable beside VOLUME, which is x: a file or series like VOLUME (--raw, --spacing, --axes "
-                "and --missing are of all), "
-                "or made of another one: gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME; repeatable",
+                "and --missing are of all), or made of another one: gradient:NAME, volatility:NAME:FRAMES, "
+                "difference:NAME:FRAME; repeatable",
                 kGroup);
     addValue(
         app, kHsb, "CHANNELS", hsb, anyText,

@@ -125,7 +125,6 @@ void OrientationController::follow() {
 void OrientationController::place(const QString& text, const std::optional<GridAxes>& axes,
                                   const std::optional<GridSpacing>& spacing) {
     m_services.attempt(tr("The data cannot lie like that"), [&] {
-        withPlacement(*m_services.scene().data, axes, spacing); // which tells what cannot be
         const auto change = [axes, spacing, data = m_services.scene().data](Session& session) {
             placeData(session, *data, axes, spacing);
         };

@@ -13,6 +13,7 @@
 #include "volume/file_names.h"
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -203,7 +204,7 @@ void ImageStack::noteMetadata() {
         m_notices.push_back(nameOf(m_otherSpacing) + " says another distance between pixels than " +
                             nameOf(m_files.front()) + ", which is taken for all pictures");
     if (!first.isApartKnown && first.spacing != Vec3(1))
-        m_notices.emplace_back("the files do not say how far slices are apart: 1 is taken unless you set the spacing");
+        m_notices.emplace_back(std::string("the files do not say how far slices are apart: 1 is taken") + kUnlessSet);
     if (m_otherScaling.empty())
         m_order.scaling = first.scaling;
     else

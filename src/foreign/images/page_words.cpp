@@ -13,6 +13,7 @@
 #include "volume/file_names.h"
 #include "volume/formats/text_header.h"
 #include "volume/formats/xml_tags.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -138,8 +139,9 @@ PageOrder orderOfImageJ(const FirstPage& page) {
     double& apart = distances.numbers.z;
     if (apart == 0 && distances.numbers.x != 1 && std::max(order.images, order.slices) > 1 && order.slices != 1)
         order.notices.emplace_back(
-            "the file does not say how far slices are apart, which ImageJ leaves out where it is 1: 1 is taken "
-            "unless you set the spacing");
+            std::string(
+                "the file does not say how far slices are apart, which ImageJ leaves out where it is 1: 1 is taken") +
+            kUnlessSet);
     if (apart == 0) apart = 1;
     setSpacing(order, distances);
     setStepTime(order, lengthIn(fields["finterval"], 0), fields.contains("tunit") ? fields["tunit"] : "s");
