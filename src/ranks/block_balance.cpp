@@ -15,18 +15,28 @@ constexpr double kWorthIt = 5.0 / 6; ///< of the work of the slowest rank
 
 /// The largest part of the work that a block has.
 double largestShare(const Decomposition& blocks, const Grid<double>& work, const Int3& dims) {
-    std::vector<double> of(blocks.blocks().size(), 0.0);
     const CellGrid grid(Int3(0), dims);
-    double all = 0;
-    for (int k = 0; k < grid.cells.z; ++k) // in one order: ranks have to agree
-        for (int j = 0; j < grid.cells.y; ++j) {
-            const int y = grid.begin(1, j), z = grid.begin(2, k);
-            for (int i = 0; i < grid.cells.x; ++i) {
-                of[static_cast<std::size_t>(blocks.blockOf({grid.begin(0, i), y, z}))] += work.at(i, j, k);
-                all += work.at(i, j, k);
-            }
+    // Along an axis, the first cell that begins at a voxel or behind it.
+    const auto from = [&](int axis, int voxel) {
+        int cell = 0;
+        while (cell < grid.cells[axis] && grid.begin(axis, cell) < voxel) ++cell;
+        return cell;
+    };
+    double all = 0, most = 0;
+    for (const VoxelRegion& block : blocks.blocks()) { // in one order: ranks have to agree
+        Int3 lo, hi;
+        for (int a = 0; a < 3; ++a) {
+            lo[a] = from(a, block.lo[a]);
+            hi[a] = from(a, block.hi[a]);
         }
-    return std::ranges::max(of) / all;
+        double here = 0;
+        for (int k = lo.z; k < hi.z; ++k)
+            for (int j = lo.y; j < hi.y; ++j)
+                for (int i = lo.x; i < hi.x; ++i) here += work.at(i, j, k);
+        all += here;
+        most = std::max(most, here);
+    }
+    return most / all;
 }
 
 } // namespace

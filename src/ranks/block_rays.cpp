@@ -55,15 +55,72 @@ std::optional<SweepReach> common(const SweepReach& a, const SweepReach& b) {
     return both;
 }
 
-/// The smallest rectangle around both.
-SweepRect spanning(const SweepRect& a, const SweepRect& b) {
-    if (a.rays() == 0) return b;
-    if (b.rays() == 0) return a;
-    return {std::min(a.firstRow, b.firstRow), std::max(a.endRow, b.endRow), std::min(a.firstCol, b.firstCol),
-            std::max(a.endCol, b.endCol)};
+/// Rays that are asked for, of those that pass through the block's own reach.
+struct Asked {
+    SweepReach where; ///< those that pass through this, too, …
+    SweepRect among;  ///< … and are in this
+    int entry = -1;   ///< where they enter this one of BlockRays::entries; −1: on their whole way
+};
+
+RaySpan common(const RaySpan& a, const RaySpan& b) { return {std::max(a.first, b.first), std::min(a.end, b.end)}; }
+
+/// Where rays may be as they enter `around` from one slice to the next: behind those of its sides that they come to
+/// from outside.
+std::vector<SweepReach> entrances(const SweepReach& around, const SweepSlopes& slopes) {
+    std::vector<SweepReach> all{around};
+    all[0].hi[2] = std::min(around.hi[2], around.lo[2] + 1);
+    for (int axis = 0; axis < 2; ++axis) {
+        if (slopes.hi[axis] > 0) {
+            all.push_back(around);
+            all.back().hi[axis] = std::min(around.hi[axis], around.lo[axis] + slopes.hi[axis]);
+        }
+        if (slopes.lo[axis] < 0) {
+            all.push_back(around);
+            all.back().lo[axis] = std::max(around.lo[axis], around.hi[axis] + slopes.lo[axis]);
+        }
+    }
+    return all;
+}
+
+/// Takes rays in.
+void widen(SweepRect& rect, int row, const RaySpan& rays) {
+    if (rays.first >= rays.end) return;
+    if (rect.rays() == 0) {
+        rect = {row, row + 1, rays.first, rays.end};
+        return;
+    }
+    rect = {std::min(rect.firstRow, row), std::max(rect.endRow, row + 1), std::min(rect.firstCol, rays.first),
+            std::max(rect.endCol, rays.end)};
 }
 
 } // namespace
+
+RayGroups::RayGroups(const SweepRect& rect) : m_rect(rect) {
+    if (rect.rays() == 0) return;
+    m_perRow = static_cast<std::size_t>((rect.endCol - rect.firstCol + kBlockSize - 1) / kBlockSize);
+    m_askedFor.resize(m_perRow * static_cast<std::size_t>(rect.endRow - rect.firstRow), 0);
+}
+
+RayGroups::Groups RayGroups::groups(int row, const RaySpan& rays) const {
+    if (rays.first >= rays.end) return {};
+    const auto groupOf = [&](int ray) { return static_cast<std::size_t>((ray - m_rect.firstCol) / kBlockSize); };
+    const std::size_t begin = static_cast<std::size_t>(row - m_rect.firstRow) * m_perRow;
+    return {begin + groupOf(rays.first), begin + groupOf(rays.end - 1) + 1};
+}
+
+void RayGroups::add(int row, const RaySpan& rays, std::uint8_t askedFor) {
+    const Groups among = groups(row, rays);
+    for (std::size_t i = among.first; i < among.end; ++i) m_askedFor[i] |= askedFor;
+}
+
+bool RayGroups::any(const SweepRect& part, std::uint8_t askedFor) const {
+    for (int row = part.firstRow; row < part.endRow; ++row) {
+        const Groups among = groups(row, {part.firstCol, part.endCol});
+        for (std::size_t i = among.first; i < among.end; ++i)
+            if ((m_askedFor[i] & askedFor) != 0) return true;
+    }
+    return false;
+}
 
 SweepRect common(const SweepRect& a, const SweepRect& b) {
     return {std::max(a.firstRow, b.firstRow), std::min(a.endRow, b.endRow), std::max(a.firstCol, b.firstCol),
@@ -92,6 +149,9 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
     rays.wanted = raysAroundBox(rays.box);
     if (isEmpty(region)) return rays;
     const SweepRect inside = raysThrough(pass, layer, rays.reach);
+    if (inside.rays() == 0) return rays;
+    const SweepSlopes slopes = slopesOf(pass, layer, inside);
+    std::vector<Asked> asked;
     bool isBehind = false;
     for (const int b : order) {
         isBehind = isBehind || b == own;
@@ -100,19 +160,40 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
         const SweepBox box = boxOf(other, axes, dims);
         const SweepReach theirs = ownReach(box, whole);
         // What a ray has met here is asked for by those who hand it over later: blocks behind this one that it reaches.
-        if (isBehind) rays.through = spanning(rays.through, common(inside, raysThrough(pass, layer, theirs)));
+        const SweepRect onTheirWay = isBehind ? common(inside, raysThrough(pass, layer, theirs)) : SweepRect{};
+        if (onTheirWay.rays() > 0) asked.push_back({theirs, onTheirWay});
         if (const auto left = common(rays.around, theirs)) {
             const SweepRect entering = common(raysThrough(pass, layer, *left), rays.wanted);
             if (entering.rays() > 0) rays.entering.push_back(entering);
         }
         const SweepReach around = reachAround(box);
-        const auto entered = common(around, rays.reach);
-        if (!entered) continue;
-        const SweepRect entering = common(raysThrough(pass, layer, *entered), raysAroundBox(box));
-        if (entering.rays() == 0) continue;
-        rays.entries.push_back({b, around, entering});
-        rays.through = spanning(rays.through, common(inside, entering));
+        const auto entry = static_cast<int>(rays.entries.size());
+        const SweepRect wanted = common(inside, raysAroundBox(box));
+        if (wanted.rays() == 0) continue;
+        for (const SweepReach& entrance : entrances(around, slopes))
+            if (const auto here = common(entrance, rays.reach)) asked.push_back({*here, wanted, entry});
+        if (!asked.empty() && asked.back().entry == entry) rays.entries.push_back({b, around, {}});
     }
+    // What is asked for of each row, one after the other.
+    std::vector<RaySpan> spans;
+    SweepRect carried;
+    for (int row = inside.firstRow; row < inside.endRow; ++row) {
+        const RaySpan here = raysThrough(pass, layer, rays.reach, row, inside);
+        for (const Asked& one : asked) {
+            RaySpan& span = spans.emplace_back();
+            if (row < one.among.firstRow || row >= one.among.endRow) continue;
+            span = common(here, raysThrough(pass, layer, one.where, row, one.among));
+            widen(carried, row, span);
+            if (one.entry >= 0) widen(rays.entries[static_cast<std::size_t>(one.entry)].rays, row, span);
+        }
+    }
+    std::erase_if(rays.entries, [](const BlockEntry& entry) { return entry.rays.rays() == 0; });
+    carried.firstCol -= (carried.firstCol - inside.firstCol) % kBlockSize; // in the same groups as everywhere
+    rays.carried = RayGroups(carried);
+    auto span = spans.begin();
+    for (int row = inside.firstRow; row < inside.endRow; ++row)
+        for (const Asked& one : asked)
+            rays.carried.add(row, *span++, one.entry < 0 ? RayGroups::kBehind : RayGroups::kBeside);
     return rays;
 }
 

@@ -1,6 +1,7 @@
 // Which rays of a sweep go through a block, and from which of its neighbours they come.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "ranks/decomposition.h"
@@ -19,6 +20,34 @@ struct BlockEntry {
     SweepRect rays;    ///< that may do so
 };
 
+/// Groups of eight rays of a rectangle, row by row, and what they are asked for.
+class RayGroups {
+public:
+    static constexpr std::uint8_t kBehind = 1; ///< what they have met on the whole way through a block
+    static constexpr std::uint8_t kBeside = 2; ///< … where they enter the surroundings of another block
+
+    RayGroups() = default; ///< of no rays
+    explicit RayGroups(const SweepRect& rect);
+
+    const SweepRect& rect() const { return m_rect; }
+    /// As SweepInput::carried has them.
+    const std::uint8_t* data() const { return m_askedFor.data(); }
+    /// `rays` and `part` lie in the rectangle.
+    void add(int row, const RaySpan& rays, std::uint8_t askedFor);
+    bool any(const SweepRect& part, std::uint8_t askedFor) const;
+
+private:
+    /// Those of a row that rays are in, [first, end) of m_askedFor.
+    struct Groups {
+        std::size_t first = 0, end = 0;
+    };
+    Groups groups(int row, const RaySpan& rays) const;
+
+    SweepRect m_rect;
+    std::size_t m_perRow = 0;
+    std::vector<std::uint8_t> m_askedFor;
+};
+
 /// The blocks from the eye on, for a camera of sweeps (sweepCamera()).
 std::vector<int> sweepOrder(const Camera& camera, const Geometry& whole, const Decomposition& blocks);
 
@@ -30,7 +59,7 @@ struct BlockRays {
     SweepReach around;
     SweepRect all;                   ///< those of the whole volume
     SweepRect wanted;                ///< around the voxels of the block
-    SweepRect through;               ///< those that pass through `reach` and are asked for behind it or beside it
+    RayGroups carried;               ///< those that pass through `reach` and are asked for behind it or beside it
     std::vector<BlockEntry> entries; ///< into the surroundings of others; none where the block is empty
     std::vector<SweepRect> entering; ///< those that may come into its own from others
 };

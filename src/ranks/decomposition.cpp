@@ -64,13 +64,20 @@ int Decomposition::cutOf(const VoxelRegion& region, int axis, double share, cons
         };
         std::vector<double> layers(static_cast<std::size_t>(cells[axis]), 0.0);
         std::array<std::vector<double>, 3> overlaps;
-        for (int a = 0; a < 3; ++a)
-            for (int cell = 0; cell < cells[a]; ++cell)
-                overlaps[static_cast<std::size_t>(a)].push_back(overlap(a, cell));
-        for (int k = 0; k < cells.z; ++k)
-            for (int j = 0; j < cells.y; ++j) {
+        VoxelRegion part{Int3(0), Int3(0)}; // the cells that the region has a share of
+        for (int a = 0; a < 3; ++a) {
+            std::vector<double>& along = overlaps[static_cast<std::size_t>(a)];
+            for (int cell = 0; cell < cells[a]; ++cell) {
+                along.push_back(overlap(a, cell));
+                if (along.back() <= 0) continue;
+                if (part.hi[a] == 0) part.lo[a] = cell;
+                part.hi[a] = cell + 1;
+            }
+        }
+        for (int k = part.lo.z; k < part.hi.z; ++k)
+            for (int j = part.lo.y; j < part.hi.y; ++j) {
                 const double row = overlaps[1][static_cast<std::size_t>(j)] * overlaps[2][static_cast<std::size_t>(k)];
-                for (int i = 0; i < cells.x && row > 0; ++i)
+                for (int i = part.lo.x; i < part.hi.x; ++i)
                     layers[static_cast<std::size_t>(Int3(i, j, k)[axis])] +=
                         row * overlaps[0][static_cast<std::size_t>(i)] * work->at(i, j, k);
             }

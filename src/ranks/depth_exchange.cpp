@@ -86,7 +86,8 @@ void findDepthsBefore(Communicator& ranks, const std::vector<int>& order, const 
         for (int tile = first; tile < end; ++tile) {
             auto& bytes = out[static_cast<std::size_t>(tiles.rankOf(tile))].bytes;
             const SweepRect rect = tiles.at(tile);
-            if (const SweepRect part = common(rect, carried.through.rect); part.rays() > 0)
+            if (const SweepRect part = common(rect, carried.through.rect);
+                part.rays() > 0 && carried.groups.any(part, RayGroups::kBehind))
                 append(bytes, carried.through, {tile, -1, part});
             for (const HandedDepths& handed : carried.handed)
                 if (const SweepRect part = common(rect, handed.depths.rect);

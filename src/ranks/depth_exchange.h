@@ -30,6 +30,7 @@ inline constexpr float kNotHanded = -1;
 /// What a block has found of one layer of a sweep by itself, as if no light were lost before it.
 struct CarriedDepths {
     RayDepths through; ///< of the whole way through the block
+    RayGroups groups;  ///< of `through`
     std::vector<HandedDepths> handed;
 };
 

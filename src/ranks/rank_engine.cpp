@@ -89,14 +89,15 @@ private:
     /// measures the block's voxels of the layer.
     void sweepLayer(const SweepInput& pass, int lanes, const SweepPass& axes, const SweepLayer& layer,
                     const std::vector<int>& order, std::vector<double>& sums, const JobControl& job) {
-        const BlockRays rays = blockRays(pass, layer, axes, m_block.whole.dims, m_block.blocks, order, m_block.own);
+        BlockRays rays = blockRays(pass, layer, axes, m_block.whole.dims, m_block.blocks, order, m_block.own);
         CarriedDepths carried;
         if (!isEmpty(m_block.block())) {
             SweepInput in = pass;
             in.bounded = true;
             in.keptLanes = lanes;
             in.reach = rays.reach;
-            in.endRect = rays.through;
+            in.endRect = rays.carried.rect();
+            in.carried = rays.carried.data();
             carried.through = RayDepths(in.endRect, lanes, 0);
             std::vector<SweepHandover> handovers;
             for (const BlockEntry& entry : rays.entries) {
@@ -111,6 +112,7 @@ private:
                 std::vector<double> none(sums.size(), 0.0);
                 m_runner.run(in, sweepPieces(in, layer), none, job.part(0, 2));
             }
+            carried.groups = std::move(rays.carried);
         }
         RayDepths before(rays.wanted, lanes, 0);
         SweepInput in = pass;

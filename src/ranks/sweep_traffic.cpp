@@ -52,8 +52,9 @@ Traffic expectedTraffic(const Geometry& whole, const Decomposition& blocks, cons
                                                                      tiles.perRound(lanes));
                 for (int tile = 0; tile < tiles.count(); ++tile) {
                     const int to = tiles.rankOf(tile);
-                    const SweepRect through = common(tiles.at(tile), rays.through);
-                    if (to != own && through.rays() > 0) sent[from] += bytesOf(through, lanes);
+                    const SweepRect through = common(tiles.at(tile), rays.carried.rect());
+                    if (to != own && through.rays() > 0 && rays.carried.any(through, RayGroups::kBehind))
+                        sent[from] += bytesOf(through, lanes);
                     for (const BlockEntry& entry : rays.entries) {
                         const SweepRect part = common(tiles.at(tile), entry.rays);
                         const bool isBehind = placeOf[static_cast<std::size_t>(entry.block)] > placeOf[from];

@@ -18,6 +18,15 @@ int CellGrid::begin(int axis, int cell) const {
     return lo[axis] + static_cast<int>(static_cast<std::int64_t>(cell) * (hi[axis] - lo[axis]) / cells[axis]);
 }
 
+VoxelRegion CellGrid::cellsIn(const VoxelRegion& region) const {
+    VoxelRegion in{Int3(0), cells};
+    for (int a = 0; a < 3; ++a) {
+        while (in.lo[a] < cells[a] && begin(a, in.lo[a] + 1) <= region.lo[a]) ++in.lo[a];
+        while (in.hi[a] > in.lo[a] && begin(a, in.hi[a] - 1) >= region.hi[a]) --in.hi[a];
+    }
+    return in;
+}
+
 Int3 CellGrid::voxelIn(const Int3& cell) const {
     const std::uint64_t random = hashOf(cell.x, cell.y, cell.z, 5);
     Int3 voxel;

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include <glm/common.hpp>
+
 #include "base/job.h"
 #include "render/clipping.h"
 #include "tf/transfer_function.h"
@@ -27,6 +29,8 @@ struct CellGrid {
     bool isFine() const { return cells == hi - lo; } ///< a cell is a voxel
     /// The first voxel of a cell; of the one after the last, hi.
     int begin(int axis, int cell) const;
+    /// The cells that have voxels of a region, as lo and hi; none where any hi ≤ lo.
+    VoxelRegion cellsIn(const VoxelRegion& region) const;
     /// A voxel of the cell, by a hash: regular places would follow regular data.
     Int3 voxelIn(const Int3& cell) const;
 };
@@ -39,13 +43,15 @@ auto ofCells(const Volume& volume, const CellGrid& grid, const JobControl& job, 
     using Value = decltype(valueOf(Int3(), 0.0));
     Grid<Value> result(grid.cells);
     const VolumePart part = partHere(volume);
+    const VoxelRegion near = grid.cellsIn(part.own);
     if (part.volume != nullptr)
-        forEachPlace(grid.cells, job, [&](const Int3& cell, std::size_t at) {
-            const Int3 voxel = grid.voxelIn(cell);
+        forEachPlace(glm::max(near.hi - near.lo, Int3(0)), job, [&](const Int3& place, std::size_t) {
+            const Int3 cell = near.lo + place, voxel = grid.voxelIn(cell);
             if (!part.owns(voxel)) return;
             const std::size_t i = part.indexOf(voxel);
-            result[at] = valueOf(voxel, part.volume->isValid(i) ? volume.intensityOfValue(part.volume->value(i))
-                                                                : std::numeric_limits<double>::quiet_NaN());
+            result.at(cell.x, cell.y, cell.z) =
+                valueOf(voxel, part.volume->isValid(i) ? volume.intensityOfValue(part.volume->value(i))
+                                                       : std::numeric_limits<double>::quiet_NaN());
         });
     if (volume.elsewhere() == nullptr) return result;
     std::vector<double> all(result.begin(), result.end()); // 0 for the voxels of others

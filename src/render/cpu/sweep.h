@@ -70,6 +70,11 @@ struct SweepRect {
     }
 };
 
+/// The rays first ≤ a < end of a row.
+struct RaySpan {
+    int first = 0, end = 0;
+};
+
 /// Of rays that no voxel of a block asks for: exhausted.
 inline constexpr float kUnknownDepth = 1e30f;
 
@@ -141,6 +146,7 @@ struct SweepInput {
     /// What rays have met at their end, of endRect, where they are carried and nothing is measured; null: measure.
     float* endDepths = nullptr;
     SweepRect endRect;
+    const std::uint8_t* carried = nullptr;    ///< per row and group of eight rays of endRect; 0: not to be carried
     const SweepHandover* handovers = nullptr; ///< of rays that are carried
     int handoverCount = 0;
 
@@ -172,7 +178,7 @@ struct SweepPiece {
 /// Memory that a piece is worked on in, kept between pieces; aligned to 64 bytes.
 class SweepScratch {
 public:
-    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Alive, Met, Near, Far, Handing, kSlots };
+    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Alive, Living, Met, Near, Far, Handing, kSlots };
     /// So many at least; contents are kept only while it need not grow.
     void* bytes(Slot slot, std::size_t count);
 
@@ -196,6 +202,14 @@ std::vector<SweepLayer> sweepLayers(const SweepInput& input);
 SweepRect raysAround(const SweepInput& input, const SweepLayer& layer);
 /// The rays among raysAround() the whole volume that pass through `reach` within a layer.
 SweepRect raysThrough(const SweepInput& input, const SweepLayer& layer, const SweepReach& reach);
+/// The same of the row of rays `b`, and a ray more on either side, as far as they are in `among`.
+RaySpan raysThrough(const SweepInput& input, const SweepLayer& layer, const SweepReach& reach, int b,
+                    const SweepRect& among);
+/// How far rays move along u and v from slice to slice, at least and at most: those of `rect`.
+struct SweepSlopes {
+    double lo[2], hi[2];
+};
+SweepSlopes slopesOf(const SweepInput& input, const SweepLayer& layer, const SweepRect& rect);
 
 /// Between which slices a ray of a layer is in `reach`, widened by a hair; nowhere where enter > leave.
 struct SweepStretch {

@@ -24,6 +24,8 @@ constexpr int kFewestRows = 6, kMostRows = 12, kPiecesWanted = 32;
 /// Slices nearer to the eye than this share their rays: there are few.
 constexpr double kNearest = 8;
 
+constexpr double kNearly = 0.01; ///< voxels that stretches of rays are widened by
+
 /// Where rays of a layer meet the plane w: ray i at base + i·scale.
 struct RayAxis {
     double base, scale;
@@ -98,41 +100,98 @@ SweepRect raysAround(const SweepInput& in, const SweepLayer& layer) {
     return rect;
 }
 
+namespace {
+
+struct Interval {
+    double lo, hi;
+};
+
+/// The part of a layer's way that a reach has along w.
+Interval slicesOf(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach) {
+    const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5;
+    return {std::max(front, reach.lo[2]), std::min<double>(layer.end - 1, reach.hi[2])};
+}
+
+/// A reach along u or v. Nobody asks for rays that have gone far beyond the volume's sides.
+Interval sidesOf(const SweepInput& in, const SweepReach& reach, int axis) {
+    return {std::max(reach.lo[axis], -kRayMargin - 1),
+            std::min(reach.hi[axis], (axis == 0 ? in.nu : in.nv) + kRayMargin)};
+}
+
+/// Where rays lie, as indices along an axis, that are in `reach` anywhere between two planes.
+Interval indicesIn(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach, int axis,
+                   const Interval& slices) {
+    const Interval sides = sidesOf(in, reach, axis);
+    Interval indices{1e30, -1e30};
+    for (const double w : {slices.lo, slices.hi}) {
+        const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
+        if (!(rays.scale > 0)) return {-1e30, 1e30}; // at the eye all rays are in one place
+        indices.lo = std::min(indices.lo, rays.indexAt(sides.lo));
+        indices.hi = std::max(indices.hi, rays.indexAt(sides.hi));
+    }
+    return indices;
+}
+
+/// The rays whose indices are in an interval, of those from `first` to before `end`.
+RaySpan raysIn(const Interval& indices, int first, int end) {
+    const auto clamped = [&](double v) {
+        return static_cast<int>(std::clamp(v, static_cast<double>(first), static_cast<double>(end)));
+    };
+    return {clamped(std::floor(indices.lo)), clamped(std::floor(indices.hi) + 1)};
+}
+
+} // namespace
+
 SweepRect raysThrough(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach) {
     const SweepRect all = raysAroundAll(in, layer);
-    const int size[2] = {in.nu, in.nv};
-    const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5, first = std::max(front, reach.lo[2]),
-                 last = std::min<double>(layer.end - 1, reach.hi[2]);
-    if (first > last) return {};
-    double lo[2] = {1e30, 1e30}, hi[2] = {-1e30, -1e30};
-    for (const double w : {first, last})
-        for (int axis = 0; axis < 2; ++axis) {
-            const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
-            // Nobody asks for rays that have gone far beyond the volume's sides.
-            const double low = std::max(reach.lo[axis], -kRayMargin - 1),
-                         high = std::min(reach.hi[axis], size[axis] + kRayMargin);
-            if (!(rays.scale > 0)) { // at the eye all rays are in one place
-                lo[axis] = -1e30;
-                hi[axis] = 1e30;
-                continue;
-            }
-            lo[axis] = std::min(lo[axis], rays.indexAt(low));
-            hi[axis] = std::max(hi[axis], rays.indexAt(high));
-        }
-    const auto clamped = [](double v, int least, int most) {
-        return static_cast<int>(std::clamp(v, static_cast<double>(least), static_cast<double>(most)));
+    const Interval slices = slicesOf(in, layer, reach);
+    if (slices.lo > slices.hi) return {};
+    const RaySpan cols = raysIn(indicesIn(in, layer, reach, 0, slices), all.firstCol, all.endCol),
+                  rows = raysIn(indicesIn(in, layer, reach, 1, slices), all.firstRow, all.endRow);
+    return {rows.first, rows.end, groupOf(cols.first, all), cols.end};
+}
+
+RaySpan raysThrough(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach, int b,
+                    const SweepRect& among) {
+    Interval slices = slicesOf(in, layer, reach);
+    const Interval sides = sidesOf(in, reach, 1);
+    const double low = sides.lo - kNearly, high = sides.hi + kNearly;
+    const auto at = [&](double w) {
+        const RayAxis rays = rowsAt(in, layer, w);
+        return rays.base + b * rays.scale;
     };
-    SweepRect rect{
-        clamped(std::floor(lo[1]), all.firstRow, all.endRow), clamped(std::floor(hi[1]) + 1, all.firstRow, all.endRow),
-        clamped(std::floor(lo[0]), all.firstCol, all.endCol), clamped(std::floor(hi[0]) + 1, all.firstCol, all.endCol)};
-    rect.firstCol = groupOf(rect.firstCol, all);
-    return rect;
+    const double v0 = at(0), slope = at(1) - v0;
+    if (slope == 0) {
+        if (v0 < low || v0 > high) return {};
+    } else {
+        const double w0 = (low - v0) / slope, w1 = (high - v0) / slope;
+        slices.lo = std::max(slices.lo, std::min(w0, w1));
+        slices.hi = std::min(slices.hi, std::max(w0, w1));
+    }
+    if (slices.lo > slices.hi) return {};
+    const Interval indices = indicesIn(in, layer, reach, 0, slices);
+    return raysIn({indices.lo - 1, indices.hi + 1}, among.firstCol, among.endCol);
+}
+
+SweepSlopes slopesOf(const SweepInput& in, const SweepLayer& layer, const SweepRect& rect) {
+    SweepSlopes slopes{};
+    for (int axis = 0; axis < 2; ++axis) {
+        const auto slope = [&](int ray) {
+            const auto at = [&](double w) {
+                const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
+                return rays.base + ray * rays.scale;
+            };
+            return at(1) - at(0);
+        };
+        slopes.lo[axis] = slope(axis == 0 ? rect.firstCol : rect.firstRow);
+        slopes.hi[axis] = slope((axis == 0 ? rect.endCol : rect.endRow) - 1);
+    }
+    return slopes;
 }
 
 SweepStretch stretchIn(const SweepInput& in, const SweepLayer& layer, int a, int b, const SweepReach& reach) {
     constexpr SweepStretch kNowhere{1, 0};
     const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5;
-    constexpr double kNearly = 0.01; // voxels
     double enter = std::max(front, reach.lo[2]), leave = reach.hi[2];
     for (int axis = 0; axis < 2; ++axis) {
         const int ray = axis == 0 ? a : b;

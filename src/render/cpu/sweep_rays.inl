@@ -403,11 +403,6 @@ private:
 
 // ==== The grid of rays =====================================================================================
 
-/// The rays first … end − 1 of a row.
-struct RaySpan {
-    int first = 0, end = 0;
-};
-
 /// What rays go through from one sample plane to the next.
 struct Advance {
     static constexpr int kNowhere = -1000000;
@@ -424,6 +419,7 @@ struct Strip {
     const std::uint8_t *aliveBelow, *aliveAbove; ///< per block of eight rays, a bit per lane that is not exhausted
     int first;                                   ///< the `a` of the first ray
     int last;                                    ///< index of the last ray that voxels lie before
+    SweepSpan living;                            ///< the blocks of either row that are not exhausted lie in it
 };
 
 /// The rays (a, b) of one piece, rows b of blocks of eight along a: all that is known of them at the sample plane that
@@ -453,7 +449,14 @@ public:
     Strip strip(int b) const {
         const float* depth = m_depth + rowOf(b) * rowRays() * K;
         const std::uint8_t* alive = m_alive + rowOf(b) * static_cast<std::size_t>(m_blocks);
-        return {depth, depth + rowRays() * K, alive, alive + m_blocks, m_a0, m_a1 - m_a0};
+        const SweepSpan &below = m_living[rowOf(b)], &above = m_living[rowOf(b) + 1];
+        return {depth,
+                depth + rowRays() * K,
+                alive,
+                alive + m_blocks,
+                m_a0,
+                m_a1 - m_a0,
+                {smaller(below.first, above.first), larger(below.last, above.last)}};
     }
 
     Advance advanceTo(int to) const {
@@ -481,6 +484,8 @@ public:
         const int from = go.to - 1, to = go.to;
         const float slices = static_cast<float>(w1 - w0);
         const bool look = to % (kExhaustedEvery * m_in.stepsPerSlice) == 0;
+        SweepSpan& living = m_living[rowOf(b)];
+        if (living.last < living.first) return;
 
         // Which part of the row is inside the box and near anything opaque?
         const double v0 = p0.v(b), v1 = p1.v(b);
@@ -492,8 +497,8 @@ public:
         Blocks reach{m_blocks, -1};
         widen(reach, m_lines.opaqueRow(v0, w0).span, p0);
         widen(reach, opaque.span, p1);
-        reach.first = larger(reach.first, go.firstBlock);
-        reach.last = smaller(reach.last, go.lastBlock);
+        reach.first = larger(larger(reach.first, go.firstBlock), living.first);
+        reach.last = smaller(smaller(reach.last, go.lastBlock), living.last);
         if (bounded) {
             reach.first = larger(reach.first, (go.going.first - m_a0) / kWide);
             reach.last = smaller(reach.last, (go.going.end - 1 - m_a0) / kWide);
@@ -550,6 +555,7 @@ public:
             }
             if (look) m_alive[at] &= static_cast<std::uint8_t>(alive(m_depth + ray * K));
         }
+        if (look) narrow(living, b);
     }
 
     // ---- Of a block of a volume alone ----
@@ -638,6 +644,7 @@ private:
         m_length = memory<float>(scratch, SweepScratch::Length, rays);
         m_stamp = memory<int>(scratch, SweepScratch::Stamp, blocks);
         m_alive = memory<std::uint8_t>(scratch, SweepScratch::Alive, blocks);
+        m_living = memory<SweepSpan>(scratch, SweepScratch::Living, rows());
         m_met = memory<std::uint8_t>(scratch, SweepScratch::Met, blocks);
         for (std::size_t i = 0; i < rays * K; ++i) m_depth[i] = 0.0f;
         for (std::size_t i = 0; i < blocks; ++i) {
@@ -649,6 +656,12 @@ private:
             for (std::size_t i = 0; i < rowRays(); ++i)
                 m_length[rowOf(b) * rowRays() + i] = static_cast<float>(rayLength(m_a0 + static_cast<int>(i), b));
         if (m_in.startDepths != nullptr) takeDepths();
+        if (m_in.carried != nullptr) leaveUnasked();
+        for (int b = m_b0; b <= m_b1; ++b) {
+            SweepSpan& living = m_living[rowOf(b)];
+            living = {0, m_blocks - 1};
+            narrow(living, b);
+        }
         if (m_in.handoverCount > 0)
             m_handing = memory<Handing>(scratch, SweepScratch::Handing, static_cast<std::size_t>(m_in.handoverCount));
     }
@@ -672,6 +685,22 @@ private:
                 }
                 m_alive[at] = static_cast<std::uint8_t>(alive(depths));
             }
+    }
+    /// Groups of rays that nobody asks for are not carried.
+    void leaveUnasked() {
+        const SweepRect& rect = m_in.endRect;
+        const std::uint8_t* asked =
+            m_in.carried + static_cast<std::size_t>(m_b0 - rect.firstRow) * static_cast<std::size_t>(m_blocks);
+        for (std::size_t i = 0, all = rows() * static_cast<std::size_t>(m_blocks),
+                         ends = static_cast<std::size_t>(m_b1 - m_b0) * static_cast<std::size_t>(m_blocks);
+             i < all; ++i)
+            if (i >= ends || asked[i] == 0) m_alive[i] = 0;
+    }
+    /// Exhausted blocks at either end of a row are not looked at again.
+    void narrow(SweepSpan& living, int b) const {
+        const std::uint8_t* alive = m_alive + rowOf(b) * static_cast<std::size_t>(m_blocks);
+        while (living.first <= living.last && alive[living.first] == 0) ++living.first;
+        while (living.first <= living.last && alive[living.last] == 0) --living.last;
     }
     /// From slice to slice, in d0; the same all along a ray.
     double rayLength(int a, int b) const {
@@ -726,6 +755,7 @@ private:
     float* m_length = nullptr;       ///< [row][ray], d0 per slice
     int* m_stamp = nullptr;          ///< [row][block], the plane of the last sample
     std::uint8_t* m_alive = nullptr; ///< [row][block], a bit per lane that is not exhausted
+    SweepSpan* m_living = nullptr;   ///< [row], the blocks that are not exhausted lie in it
     std::uint8_t* m_met = nullptr;   ///< [row][block], the lanes that are opaque around the last sample plane
     Handing* m_handing = nullptr;    ///< per SweepInput::handovers; null: none
 };

@@ -137,11 +137,18 @@ public:
     /// Measures the voxels (…, v) of a slice that lie among the rays of a strip, at `fractionV` between its two rows.
     /// Blocks are passed over that are transparent, or that no light reaches, in every lane.
     void measureRow(const Slice& slice, int v, const Strip& strip, float fractionV) {
+        const SweepSpan& living = strip.living;
+        if (living.last < living.first) return;
         const int k = slice.k;
         const Extent& extent = slice.extent;
         const auto opaque = m_lines.opaqueRow(v, k);
-        const int firstBlock = larger(extent.u0 / kWide, opaque.span.first),
-                  lastBlock = smaller(extent.u1 / kWide, opaque.span.last);
+        int firstBlock = larger(extent.u0 / kWide, opaque.span.first),
+            lastBlock = smaller(extent.u1 / kWide, opaque.span.last);
+        // Where rays are exhausted voxels need not be looked at; a ray more, since places are rounded.
+        if (living.first > 0)
+            firstBlock = larger(firstBlock, floorInt(slice.rays.u(strip.first + living.first * kWide - 2)) / kWide);
+        if ((living.last + 1) * kWide < strip.last)
+            lastBlock = smaller(lastBlock, floorInt(slice.rays.u(strip.first + (living.last + 1) * kWide)) / kWide);
         if (firstBlock > lastBlock) return;
         VoxelBlock block;
         block.v = v;
