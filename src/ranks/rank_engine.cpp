@@ -152,12 +152,18 @@ private:
 
     /// What rays have met that nobody hands over: they come from outside the volume, or never come here.
     static void begin(const SweepInput& in, const SweepLayer& layer, RayDepths& depths) {
-        for (int row = depths.rect.firstRow; row < depths.rect.endRow; ++row)
-            for (int col = depths.rect.firstCol; col < depths.rect.endCol; ++col) {
-                if (passes(in, layer, col, row, in.reach)) continue; // 0
-                float* ray = depths.values.data() + depths.rect.at(col, row, depths.lanes);
-                std::fill_n(ray, depths.lanes, kUnknownDepth);
-            }
+        const SweepRect& rect = depths.rect;
+        for (int row = rect.firstRow; row < rect.endRow; ++row) {
+            RaySpan span = raysThrough(in, layer, in.reach, row, rect);
+            while (span.first < span.end && !passes(in, layer, span.first, row, in.reach)) ++span.first;
+            while (span.first < span.end && !passes(in, layer, span.end - 1, row, in.reach)) --span.end;
+            if (span.first >= span.end) span = {rect.endCol, rect.endCol};
+            const auto at = [&](int col) {
+                return depths.values.begin() + static_cast<std::ptrdiff_t>(rect.at(col, row, depths.lanes));
+            };
+            std::fill(at(rect.firstCol), at(span.first), kUnknownDepth); // those between begin with 0
+            std::fill(at(span.end), at(rect.endCol), kUnknownDepth);
+        }
     }
 
     Communicator& m_ranks;
