@@ -13,9 +13,13 @@ namespace {
 
 constexpr double kWorthIt = 5.0 / 6; ///< of the work of the slowest rank
 
+/// A voxel in each of up to 2^15 cells tells how much there is to do to a percent, and each is far from the others in
+/// memory.
+CellGrid workGrid(const Int3& dims) { return {Int3(0), dims, std::size_t{1} << 15}; }
+
 /// The largest part of the work that a block has.
 double largestShare(const Decomposition& blocks, const Grid<double>& work, const Int3& dims) {
-    const CellGrid grid(Int3(0), dims);
+    const CellGrid grid = workGrid(dims);
     // Along an axis, the first cell that begins at a voxel or behind it.
     const auto from = [&](int axis, int voxel) {
         int cell = 0;
@@ -45,7 +49,7 @@ Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const C
                        const JobControl& job) {
     const std::vector<VoxelPlane> planes = planesInVoxels(clipping, volume.geometry());
     const TfSampler sampler(tf);
-    return ofCells(volume, CellGrid(Int3(0), volume.dims()), job, [&](const Int3& voxel, double s) {
+    return ofCells(volume, workGrid(volume.dims()), job, [&](const Int3& voxel, double s) {
         return !std::isnan(s) && sampler.opacity(s) > 0 && keeps(planes, Vec3(voxel)) ? 1 : kEmptyWork;
     });
 }

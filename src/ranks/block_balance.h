@@ -9,8 +9,8 @@
 
 namespace pellucid {
 
-/// What a sweep has to do in the cells of a coarse grid over the volume: as many as in CellGrid, 1 where the voxel that
-/// stands for a cell is kept and its opacity is not 0, kEmptyWork elsewhere. Collective where the voxels are in several
+/// What a sweep has to do in the cells of a coarse grid over the volume, at most 2^15: 1 where the voxel that stands
+/// for a cell is kept and its opacity is not 0, kEmptyWork elsewhere. Collective where the voxels are in several
 /// processes; throws Cancelled.
 Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping,
                        const JobControl& job = {});

@@ -8,8 +8,8 @@
 
 namespace pellucid {
 
-CellGrid::CellGrid(const Int3& from, const Int3& to) : lo(from), hi(to), cells(to - from) {
-    const double factor = std::cbrt(static_cast<double>(voxelCount(cells)) / static_cast<double>(kMost));
+CellGrid::CellGrid(const Int3& from, const Int3& to, std::size_t most) : lo(from), hi(to), cells(to - from) {
+    const double factor = std::cbrt(static_cast<double>(voxelCount(cells)) / static_cast<double>(most));
     if (factor <= 1) return;
     for (int a = 0; a < 3; ++a) cells[a] = std::clamp(static_cast<int>(cells[a] / factor), 1, cells[a]);
 }

@@ -18,14 +18,14 @@
 
 namespace pellucid {
 
-/// Voxels lo … hi − 1 along each axis, and the cells that they are divided into: at most kMost, as many as voxels where
-/// these are fewer.
+/// Voxels lo … hi − 1 along each axis, and the cells that they are divided into: `most` at most, as many as voxels
+/// where these are fewer.
 struct CellGrid {
     static constexpr std::size_t kMost = std::size_t{1} << 18;
 
     Int3 lo, hi, cells;
 
-    CellGrid(const Int3& from, const Int3& to);
+    CellGrid(const Int3& from, const Int3& to, std::size_t most = kMost);
     bool isFine() const { return cells == hi - lo; } ///< a cell is a voxel
     /// The first voxel of a cell; of the one after the last, hi.
     int begin(int axis, int cell) const;

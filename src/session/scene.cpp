@@ -161,7 +161,8 @@ int soundFrame(TimeSeries& series, int frame, const JobControl& job) {
 
 } // namespace
 
-Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const JobControl& job) {
+Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const JobControl& job,
+              const std::shared_ptr<const Histogram>& histogram) {
     Scene scene;
     scene.session = std::move(session);
     if (scene.session.isEmpty()) return scene;
@@ -192,7 +193,8 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     if (sameSeries) scene.unit = basis.unit;
     followTargetKeys(scene.session, basis);
     proposeStart(scene, job);
-    if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
+    if (!scene.histogram)
+        scene.histogram = histogram ? histogram : std::make_shared<const Histogram>(makeHistogram(*scene.volume));
     if (sameWindow && !scene.proposal && scene.session.tf() == basis.session.tf()) {
         scene.tf = basis.tf; // the very same
     } else {
@@ -292,9 +294,10 @@ namespace {
 Scene readAgain(Scene scene, const MemoryUse& then, const JobControl& job) {
     const auto proposal = scene.proposal;
     const Camera camera = scene.camera;
+    const auto histogram = scene.histogram;
     Session session = std::move(scene.session);
     scene = {}; // its memory is wanted
-    scene = resolve(std::move(session), {}, then, job);
+    scene = resolve(std::move(session), {}, then, job, histogram);
     scene.proposal = proposal;
     scene.camera = camera;
     return scene;

@@ -112,8 +112,9 @@ AutomaticStart automaticStart(const Scene& scene, const View& view, const JobCon
 /// has is taken from there: where source, frame and window are the same this costs next to nothing, where only the
 /// window differs no file is read. A frame beyond the end becomes the last one. Targets of another frame than that of
 /// `basis` are those of the session's target keys; other targets in the same frame become its key, where there are
-/// keys.
-Scene resolve(Session session, const Scene& basis, const MemoryUse& then = {}, const JobControl& job = {});
+/// keys. `histogram`: of the frame through its window, where it is known and `basis` has none.
+Scene resolve(Session session, const Scene& basis, const MemoryUse& then = {}, const JobControl& job = {},
+              const std::shared_ptr<const Histogram>& histogram = {});
 /// Whether resolve() would read a file or go over all voxels. Colours of several variables are no reason: where they
 /// are to be made anew for a change at hand, that is done at once.
 bool needsData(const Session& session, const Scene& basis);
