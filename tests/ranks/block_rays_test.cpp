@@ -4,9 +4,10 @@
 #include <random>
 
 #include "ranks/block_rays.h"
-#include "render/view_direction.h"
+#include "support/view_cases.h"
 
 using namespace pellucid;
+using namespace pellucid::test;
 
 namespace {
 
@@ -14,14 +15,6 @@ Geometry box(const Int3& dims) {
     Geometry geometry;
     geometry.dims = dims;
     return geometry;
-}
-
-std::vector<Camera> cameras(const Geometry& g) {
-    Camera close = cameraFromView(g, 120, 5, 1, Projection::Perspective);
-    close.eye = close.center + 0.6 * (close.eye - close.center);
-    return {cameraFromView(g, 30, 20, 1, Projection::Perspective),
-            cameraFromView(g, 200, -35, 1, Projection::Orthographic),
-            cameraFromView(g, 0, 0, 1, Projection::Orthographic), close};
 }
 
 /// Between which slices of the layer a ray is in a reach and no farther beside the volume than anybody asks for.
@@ -53,7 +46,7 @@ TEST_CASE("a row of rays knows which of them pass through a reach", "[ranks][ray
     std::mt19937 random(7);
     const auto between = [&](double lo, double hi) { return std::uniform_real_distribution(lo, hi)(random); };
     std::size_t passing = 0, spanned = 0;
-    for (const Camera& view : cameras(whole))
+    for (const Camera& view : viewCases(whole, 0.6))
         forEachLayer(whole, view, [&](const SweepInput& in, const SweepPass&, const SweepLayer& layer) {
             const SweepRect all = raysThrough(in, layer, {{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}});
             for (int n = 0; n < 20; ++n) {
@@ -86,7 +79,7 @@ TEST_CASE("a row of rays knows which of them pass through a reach", "[ranks][ray
 TEST_CASE("blocks carry the rays that others ask for", "[ranks][rays]") {
     const Geometry whole = box({96, 64, 80});
     const Decomposition blocks(whole.dims, 8);
-    for (const Camera& view : cameras(whole)) {
+    for (const Camera& view : viewCases(whole, 0.6)) {
         const std::vector<int> order = sweepOrder(sweepCamera(view, whole), whole, blocks);
         forEachLayer(whole, view, [&](const SweepInput& in, const SweepPass& pass, const SweepLayer& layer) {
             std::vector<BlockRays> of;

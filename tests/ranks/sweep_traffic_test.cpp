@@ -7,6 +7,7 @@
 #include "ranks/rank_engine.h"
 #include "ranks/sweep_traffic.h"
 #include "support/thread_ranks.h"
+#include "support/view_cases.h"
 #include "volume/loader.h"
 
 using namespace pellucid;
@@ -21,14 +22,6 @@ std::shared_ptr<const Volume> knee(int size) {
     source.path = "sample:knee";
     source.sampleSize = size;
     return std::make_shared<const Volume>(loadHere(source));
-}
-
-std::vector<Camera> cameras(const Geometry& g) {
-    Camera close = cameraFromView(g, 120, 5, 1, Projection::Perspective);
-    close.eye = close.center + 0.75 * (close.eye - close.center);
-    return {cameraFromView(g, 30, 20, 1, Projection::Perspective),
-            cameraFromView(g, 200, -35, 1, Projection::Orthographic),
-            cameraFromView(g, 0, 0, 1, Projection::Orthographic), close};
 }
 
 /// The most that a rank has sent for one sweep of kLanes transfer functions.
@@ -62,7 +55,7 @@ Traffic counted(const std::shared_ptr<const Volume>& volume, int ranks, const Ca
 
 TEST_CASE("ranks send what blocks and rays let expect", "[ranks][traffic]") {
     const auto volume = knee(160);
-    for (const Camera& camera : cameras(volume->geometry()))
+    for (const Camera& camera : viewCases(volume->geometry(), 0.75))
         for (const int ranks : {2, 3, 4, 8}) {
             INFO(ranks << " ranks, eye " << camera.eye.x << ", " << camera.eye.y << ", " << camera.eye.z);
             const Traffic sent = counted(volume, ranks, camera);
