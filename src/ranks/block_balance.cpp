@@ -13,13 +13,15 @@ namespace {
 
 constexpr double kWorthIt = 5.0 / 6; ///< of the work of the slowest rank
 
-/// A voxel in each of up to 2^15 cells tells how much there is to do to a percent, and each is far from the others in
-/// memory.
-CellGrid workGrid(const Int3& dims) { return {Int3(0), dims, std::size_t{1} << 15}; }
+/// Some 4096 samples for each rank, so that its share is known to about 2 %. More would cost a cache miss each.
+CellGrid workGrid(const Int3& dims, int ranks) {
+    constexpr std::size_t kOfRank = 4096;
+    return {Int3(0), dims, std::min(kOfRank * static_cast<std::size_t>(ranks), CellGrid::kMost)};
+}
 
 /// The largest part of the work that a block has.
 double largestShare(const Decomposition& blocks, const Grid<double>& work, const Int3& dims) {
-    const CellGrid grid = workGrid(dims);
+    const CellGrid grid = workGrid(dims, static_cast<int>(blocks.blocks().size()));
     // Along an axis, the first cell that begins at a voxel or behind it.
     const auto from = [&](int axis, int voxel) {
         int cell = 0;
@@ -45,11 +47,11 @@ double largestShare(const Decomposition& blocks, const Grid<double>& work, const
 
 } // namespace
 
-Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping,
+Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, int ranks,
                        const JobControl& job) {
     const std::vector<VoxelPlane> planes = planesInVoxels(clipping, volume.geometry());
     const TfSampler sampler(tf);
-    return ofCells(volume, workGrid(volume.dims()), job, [&](const Int3& voxel, double s) {
+    return ofCells(volume, workGrid(volume.dims(), ranks), job, [&](const Int3& voxel, double s) {
         return !std::isnan(s) && sampler.opacity(s) > 0 && keeps(planes, Vec3(voxel)) ? 1 : kEmptyWork;
     });
 }
@@ -59,7 +61,7 @@ bool cutByWork(const Volume& volume, const TransferFunction& tf, const Clipping&
     const auto* const voxels = dynamic_cast<const RankVoxels*>(volume.elsewhere());
     if (voxels == nullptr || voxels->layout() == nullptr) return false;
     Communicator& ranks = voxels->ranks();
-    const Grid<double> work = sweepWork(volume, tf, clipping, job);
+    const Grid<double> work = sweepWork(volume, tf, clipping, ranks.size(), job);
     const Decomposition next(volume.dims(), ranks.size(), &work);
     if (largestShare(next, work, volume.dims()) > kWorthIt * largestShare(voxels->blocks(), work, volume.dims()))
         return false;

@@ -9,10 +9,10 @@
 
 namespace pellucid {
 
-/// What a sweep has to do in the cells of a coarse grid over the volume, at most 2^15: 1 where the voxel that stands
-/// for a cell is kept and its opacity is not 0, kEmptyWork elsewhere. Collective where the voxels are in several
-/// processes; throws Cancelled.
-Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping,
+/// What a sweep has to do in the cells of a coarse grid over the volume, about 4096 of them for each of `ranks`, 2^18
+/// at most: 1 where the voxel that stands for a cell is kept and its opacity is not 0, kEmptyWork elsewhere. Collective
+/// where the voxels are in several processes; throws Cancelled.
+Grid<double> sweepWork(const Volume& volume, const TransferFunction& tf, const Clipping& clipping, int ranks,
                        const JobControl& job = {});
 
 /// Of what a voxel takes that is drawn; a sweep alone takes 0.03 to 0.09 of it.

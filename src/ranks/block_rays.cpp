@@ -64,8 +64,8 @@ struct Asked {
 
 RaySpan common(const RaySpan& a, const RaySpan& b) { return {std::max(a.first, b.first), std::min(a.end, b.end)}; }
 
-/// Where rays may be as they enter `around` from one slice to the next: behind those of its sides that they come to
-/// from outside.
+/// Where rays are on the first sample plane inside `around`: at most one slice's way behind a side that they cross
+/// inwards. Planes are at most a slice apart.
 std::vector<SweepReach> entrances(const SweepReach& around, const SweepSlopes& slopes) {
     std::vector<SweepReach> all{around};
     all[0].hi[2] = std::min(around.hi[2], around.lo[2] + 1);
@@ -188,7 +188,8 @@ BlockRays blockRays(const SweepInput& pass, const SweepLayer& layer, const Sweep
         }
     }
     std::erase_if(rays.entries, [](const BlockEntry& entry) { return entry.rays.rays() == 0; });
-    carried.firstCol -= (carried.firstCol - inside.firstCol) % kBlockSize; // in the same groups as everywhere
+    if (carried.rays() > 0)
+        carried.firstCol -= (carried.firstCol - inside.firstCol) % kBlockSize; // in the same groups as everywhere
     rays.carried = RayGroups(carried);
     auto span = spans.begin();
     for (int row = inside.firstRow; row < inside.endRow; ++row)

@@ -29,7 +29,7 @@ inline constexpr float kNotHanded = -1;
 
 /// What a block has found of one layer of a sweep by itself, as if no light were lost before it.
 struct CarriedDepths {
-    RayDepths through; ///< of the whole way through the block
+    RayDepths through; ///< of the whole way through the block; 0 in groups that nobody asks for
     RayGroups groups;  ///< of `through`
     std::vector<HandedDepths> handed;
 };

@@ -161,7 +161,7 @@ private:
             const auto at = [&](int col) {
                 return depths.values.begin() + static_cast<std::ptrdiff_t>(rect.at(col, row, depths.lanes));
             };
-            std::fill(at(rect.firstCol), at(span.first), kUnknownDepth); // those between begin with 0
+            std::fill(at(rect.firstCol), at(span.first), kUnknownDepth); // those in between keep 0
             std::fill(at(span.end), at(rect.endCol), kUnknownDepth);
         }
     }

@@ -154,7 +154,7 @@ TEST_CASE("what is cut away is no work", "[ranks][balance]") {
     const Volume v = ballAbout({64, 32, 32}, 500).withRange({0, 255});
     Clipping clipping;
     clipping.hi.x = 0.25;
-    const Grid<double> all = sweepWork(v, solid(), {}), kept = sweepWork(v, solid(), clipping);
+    const Grid<double> all = sweepWork(v, solid(), {}, kRanks), kept = sweepWork(v, solid(), clipping, kRanks);
     const auto drawn = [](const Grid<double>& work) { return std::ranges::count(work, 1.0); };
     CHECK(drawn(all) == static_cast<std::ptrdiff_t>(all.size()));
     CHECK(static_cast<double>(drawn(kept)) / static_cast<double>(all.size()) == Approx(0.25).margin(0.02));

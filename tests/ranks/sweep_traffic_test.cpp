@@ -53,7 +53,7 @@ Traffic counted(const std::shared_ptr<const Volume>& volume, int ranks, const Ca
 
 } // namespace
 
-TEST_CASE("ranks send what blocks and rays let expect", "[ranks][traffic]") {
+TEST_CASE("ranks send what blocks and rays predict", "[ranks][traffic]") {
     const auto volume = knee(160);
     for (const Camera& camera : viewCases(volume->geometry(), 0.75))
         for (const int ranks : {2, 3, 4, 8}) {

@@ -146,7 +146,8 @@ struct SweepInput {
     /// What rays have met at their end, of endRect, where they are carried and nothing is measured; null: measure.
     float* endDepths = nullptr;
     SweepRect endRect;
-    const std::uint8_t* carried = nullptr;    ///< per row and group of eight rays of endRect; 0: not to be carried
+    /// Per row of endRect and group of eight rays, counted from its first column; 0: not to be carried. Null: all are.
+    const std::uint8_t* carried = nullptr;
     const SweepHandover* handovers = nullptr; ///< of rays that are carried
     int handoverCount = 0;
 

@@ -121,7 +121,9 @@ Interval sidesOf(const SweepInput& in, const SweepReach& reach, int axis) {
 /// Where rays lie, as indices along an axis, that are in `reach` anywhere between two planes.
 Interval indicesIn(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach, int axis,
                    const Interval& slices) {
-    const Interval sides = sidesOf(in, reach, axis);
+    Interval sides = sidesOf(in, reach, axis);
+    sides.lo -= kNearly;
+    sides.hi += kNearly;
     Interval indices{1e30, -1e30};
     for (const double w : {slices.lo, slices.hi}) {
         const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
@@ -155,6 +157,7 @@ RaySpan raysThrough(const SweepInput& in, const SweepLayer& layer, const SweepRe
                     const SweepRect& among) {
     Interval slices = slicesOf(in, layer, reach);
     const Interval sides = sidesOf(in, reach, 1);
+    if (sides.lo > sides.hi) return {}; // beside all that is asked for
     const double low = sides.lo - kNearly, high = sides.hi + kNearly;
     const auto at = [&](double w) {
         const RayAxis rays = rowsAt(in, layer, w);

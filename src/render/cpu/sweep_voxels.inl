@@ -148,7 +148,7 @@ public:
         if (living.first > 0)
             firstBlock = larger(firstBlock, floorInt(slice.rays.u(strip.first + living.first * kWide - 2)) / kWide);
         if ((living.last + 1) * kWide < strip.last)
-            lastBlock = smaller(lastBlock, floorInt(slice.rays.u(strip.first + (living.last + 1) * kWide)) / kWide);
+            lastBlock = smaller(lastBlock, floorInt(slice.rays.u(strip.first + (living.last + 1) * kWide + 1)) / kWide);
         if (firstBlock > lastBlock) return;
         VoxelBlock block;
         block.v = v;
