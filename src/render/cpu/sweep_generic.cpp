@@ -40,6 +40,23 @@ RayAxis colsAt(const SweepInput& in, const SweepLayer& layer, double w) {
     return {in.slopeU * w, in.raySpacing};
 }
 
+RayAxis raysAt(const SweepInput& in, const SweepLayer& layer, int axis, double w) {
+    return axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
+}
+
+/// Where a ray lies along an axis: at start + slope·w.
+struct RayLine {
+    double start, slope;
+};
+RayLine lineOf(const SweepInput& in, const SweepLayer& layer, int axis, int ray) {
+    const auto at = [&](double w) {
+        const RayAxis rays = raysAt(in, layer, axis, w);
+        return rays.base + ray * rays.scale;
+    };
+    const double start = at(0);
+    return {start, at(1) - start};
+}
+
 /// The first and last voxel along an axis of those of [first, last] that a pyramid leaves of a slice.
 void leavePyramid(const SweepInput& in, double eye, double away, double& first, double& last) {
     if (!in.pyramid) return;
@@ -74,7 +91,7 @@ SweepRect raysAroundWindow(const SweepInput& in, const SweepLayer& layer) {
     double lo[2] = {1e30, 1e30}, hi[2] = {-1e30, -1e30};
     for (const int k : {begin, end - 1}) // monotone in w: the extremes are at the ends
         for (int axis = 0; axis < 2; ++axis) {
-            const RayAxis rays = axis == 0 ? colsAt(in, layer, k) : rowsAt(in, layer, k);
+            const RayAxis rays = raysAt(in, layer, axis, k);
             double first = in.window.lo[axis], last = in.window.hi[axis] - 1;
             leavePyramid(in, axis == 0 ? in.eyeU : in.eyeV, k - in.eyeW, first, last);
             lo[axis] = std::min(lo[axis], rays.indexAt(first));
@@ -106,10 +123,26 @@ struct Interval {
     double lo, hi;
 };
 
-/// The part of a layer's way that a reach has along w.
+/// The slices that rays have of a reach along w, from the front of the box or from the eye on.
+Interval slicesOf(const SweepInput& in, const SweepReach& reach) {
+    return {std::max(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5, reach.lo[2]), reach.hi[2]};
+}
+/// The same as far as a layer goes.
 Interval slicesOf(const SweepInput& in, const SweepLayer& layer, const SweepReach& reach) {
-    const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5;
-    return {std::max(front, reach.lo[2]), std::min<double>(layer.end - 1, reach.hi[2])};
+    const Interval slices = slicesOf(in, reach);
+    return {slices.lo, std::min<double>(layer.end - 1, slices.hi)};
+}
+
+/// Leaves those slices in which a ray is nearly within `sides`; lo > hi: none.
+void keepWithin(Interval& slices, const RayLine& ray, const Interval& sides) {
+    const double low = sides.lo - kNearly, high = sides.hi + kNearly;
+    if (ray.slope == 0) {
+        if (ray.start < low || ray.start > high) slices = {1, 0};
+        return;
+    }
+    const double w0 = (low - ray.start) / ray.slope, w1 = (high - ray.start) / ray.slope;
+    slices.lo = std::max(slices.lo, std::min(w0, w1));
+    slices.hi = std::min(slices.hi, std::max(w0, w1));
 }
 
 /// A reach along u or v. Nobody asks for rays that have gone far beyond the volume's sides.
@@ -126,7 +159,7 @@ Interval indicesIn(const SweepInput& in, const SweepLayer& layer, const SweepRea
     sides.hi += kNearly;
     Interval indices{1e30, -1e30};
     for (const double w : {slices.lo, slices.hi}) {
-        const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
+        const RayAxis rays = raysAt(in, layer, axis, w);
         if (!(rays.scale > 0)) return {-1e30, 1e30}; // at the eye all rays are in one place
         indices.lo = std::min(indices.lo, rays.indexAt(sides.lo));
         indices.hi = std::max(indices.hi, rays.indexAt(sides.hi));
@@ -158,60 +191,22 @@ RaySpan raysThrough(const SweepInput& in, const SweepLayer& layer, const SweepRe
     Interval slices = slicesOf(in, layer, reach);
     const Interval sides = sidesOf(in, reach, 1);
     if (sides.lo > sides.hi) return {}; // beside all that is asked for
-    const double low = sides.lo - kNearly, high = sides.hi + kNearly;
-    const auto at = [&](double w) {
-        const RayAxis rays = rowsAt(in, layer, w);
-        return rays.base + b * rays.scale;
-    };
-    const double v0 = at(0), slope = at(1) - v0;
-    if (slope == 0) {
-        if (v0 < low || v0 > high) return {};
-    } else {
-        const double w0 = (low - v0) / slope, w1 = (high - v0) / slope;
-        slices.lo = std::max(slices.lo, std::min(w0, w1));
-        slices.hi = std::min(slices.hi, std::max(w0, w1));
-    }
+    keepWithin(slices, lineOf(in, layer, 1, b), sides);
     if (slices.lo > slices.hi) return {};
     const Interval indices = indicesIn(in, layer, reach, 0, slices);
     return raysIn({indices.lo - 1, indices.hi + 1}, among.firstCol, among.endCol);
 }
 
 SweepSlopes slopesOf(const SweepInput& in, const SweepLayer& layer, const SweepRect& rect) {
-    SweepSlopes slopes{};
-    for (int axis = 0; axis < 2; ++axis) {
-        const auto slope = [&](int ray) {
-            const auto at = [&](double w) {
-                const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
-                return rays.base + ray * rays.scale;
-            };
-            return at(1) - at(0);
-        };
-        slopes.lo[axis] = slope(axis == 0 ? rect.firstCol : rect.firstRow);
-        slopes.hi[axis] = slope((axis == 0 ? rect.endCol : rect.endRow) - 1);
-    }
-    return slopes;
+    return {{lineOf(in, layer, 0, rect.firstCol).slope, lineOf(in, layer, 1, rect.firstRow).slope},
+            {lineOf(in, layer, 0, rect.endCol - 1).slope, lineOf(in, layer, 1, rect.endRow - 1).slope}};
 }
 
 SweepStretch stretchIn(const SweepInput& in, const SweepLayer& layer, int a, int b, const SweepReach& reach) {
-    constexpr SweepStretch kNowhere{1, 0};
-    const double front = in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5;
-    double enter = std::max(front, reach.lo[2]), leave = reach.hi[2];
-    for (int axis = 0; axis < 2; ++axis) {
-        const int ray = axis == 0 ? a : b;
-        const auto at = [&](double w) {
-            const RayAxis rays = axis == 0 ? colsAt(in, layer, w) : rowsAt(in, layer, w);
-            return rays.base + ray * rays.scale;
-        };
-        const double x0 = at(0), slope = at(1) - x0, low = reach.lo[axis] - kNearly, high = reach.hi[axis] + kNearly;
-        if (slope == 0) {
-            if (x0 < low || x0 > high) return kNowhere;
-            continue;
-        }
-        const double w0 = (low - x0) / slope, w1 = (high - x0) / slope;
-        enter = std::max(enter, std::min(w0, w1));
-        leave = std::min(leave, std::max(w0, w1));
-    }
-    return {enter, leave};
+    Interval slices = slicesOf(in, reach);
+    keepWithin(slices, lineOf(in, layer, 0, a), {reach.lo[0], reach.hi[0]});
+    keepWithin(slices, lineOf(in, layer, 1, b), {reach.lo[1], reach.hi[1]});
+    return {slices.lo, slices.hi};
 }
 
 bool passes(const SweepInput& in, const SweepLayer& layer, int a, int b, const SweepReach& reach) {
