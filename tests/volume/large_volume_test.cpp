@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include <zlib.h>
+
 #include <glm/geometric.hpp>
 
 #include "base/error.h"
@@ -128,8 +130,8 @@ TEST_CASE("a large raw file is mapped, and has the samples that reading it gives
 TEST_CASE("a region of a large raw file has the voxels of the whole, in either byte order", "[large]") {
     const TempFolder folder;
     const Int3 dims(230, 211, 225);
-    const VoxelRegion region{{1, 2, 3}, {229, 210, 224}}; // more than one window of 16 MiB
-    REQUIRE(voxelCount(region.hi - region.lo) * 2 > kMapBytes + (2u << 20));
+    const VoxelRegion region{{1, 2, 3}, {229, 210, 224}};
+    REQUIRE(voxelCount(region.hi - region.lo) * 2 > kMapBytes);
     auto values = mixed<std::uint16_t>(voxelCount(dims));
     VolumeSource raw;
     raw.path = folder.write("a.raw", "odd" + bytesOfValues(values));
@@ -140,7 +142,9 @@ TEST_CASE("a region of a large raw file has the voxels of the whole, in either b
         raw.raw->bigEndian = bigEndian;
         if (bigEndian)
             for (std::uint16_t& v : values) v = static_cast<std::uint16_t>(v << 8 | v >> 8);
-        const auto samples = samplesOf<std::uint16_t>(loadVolume(raw));
+        const Volume part = loadVolume(raw);
+        CHECK(!part.isMapped());
+        const auto samples = samplesOf<std::uint16_t>(part);
         REQUIRE(samples.size() == voxelCount(region.hi - region.lo));
         std::size_t n = 0, wrong = 0;
         for (int k = region.lo.z; k < region.hi.z; ++k)
@@ -163,6 +167,35 @@ TEST_CASE("small files are read: they may change while they are in use", "[large
     CHECK(!volume.isMapped());
     folder.write("a.raw", "x");
     CHECK(volume.value(7) == 'h');
+}
+
+TEST_CASE("samples of 8 bits are their own codes, however they were read", "[large]") {
+    const TempFolder folder;
+    const Int3 dims(16, 8, 8);
+    std::string bytes;
+    for (std::size_t i = 0; i < voxelCount(dims); ++i) bytes += static_cast<char>(i % 256);
+    VolumeSource source;
+    source.raw = RawLayout{dims, SampleType::U8, false, 0};
+    source.path = folder.write("plain.raw", bytes);
+    CHECK(samplesAreNarrowCodes(loadVolume(source)));
+    source.region = VoxelRegion{{0, 0, 2}, {16, 8, 6}};
+    CHECK(samplesAreNarrowCodes(loadVolume(source)));
+    source.region.reset();
+    source.raw->skipBytes = 3;
+    source.path = folder.path("packed.raw.gz");
+    gzFile packed = gzopen(source.path.c_str(), "wb");
+    gzwrite(packed, "abc", 3);
+    gzwrite(packed, bytes.data(), static_cast<unsigned>(bytes.size()));
+    gzclose(packed);
+    const Volume unpacked = loadVolume(source);
+    CHECK(samplesAreNarrowCodes(unpacked));
+    CHECK(samplesOf<std::uint8_t>(unpacked) == std::vector<std::uint8_t>(bytes.begin(), bytes.end()));
+    // Values of two components, one of which is taken.
+    VolumeSource component;
+    component.path = folder.write("two.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 8 8 8\n"
+                                              "kinds: vector domain domain domain\nencoding: raw\n\n" +
+                                                  bytes);
+    CHECK(samplesAreNarrowCodes(loadVolume(component)));
 }
 
 TEST_CASE("a mapping has the file's bytes and zeros behind them", "[large]") {

@@ -74,6 +74,12 @@ private:
     std::size_t m_all, m_done = 0, m_nextReport = 0;
 };
 
+/// Room for so many samples, padded, so that codes of 8 bits need no copy.
+template <class Kept>
+ZeroedVector<Kept> roomFor(std::size_t voxels) {
+    return ZeroedVector<Kept>(voxels + SampleArray<Kept>::kPadding);
+}
+
 /// What readSamples() makes a volume of.
 struct Collected {
     Samples samples;
@@ -90,10 +96,11 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
         length *= std::exchange(ny, 1);
         if (selection.stride[2] == size(1) * selection.stride[1]) length *= std::exchange(nz, 1);
     }
-    ZeroedVector<Kept> kept(voxelCount(selection.dims));
+    const std::size_t all = voxelCount(selection.dims);
+    auto kept = roomFor<Kept>(all);
     std::size_t done = 0;
     VoxelReader<T> reader(values, selection.stride[0]);
-    ReadProgress progress(job, kept.size());
+    ReadProgress progress(job, all);
     for (std::uint64_t k = 0; k < nz; ++k)
         for (std::uint64_t j = 0; j < ny; ++j)
             reader.readLine(selection.first + j * selection.stride[1] + k * selection.stride[2], length,
@@ -103,25 +110,26 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
                                 progress.add(static_cast<std::size_t>(voxels));
                             });
     values.finish();
-    return {std::move(kept), {0, -1}};
+    return {SampleArray<Kept>(std::move(kept), all), {0, -1}};
 }
 
 /// The same where values are kept as the file has them and lie beside each other: nothing stands between file and
 /// samples.
 template <class T>
 Collected collectPlain(Values& values, const Selection& selection, const JobControl& job) {
-    ZeroedVector<T> kept(voxelCount(selection.dims));
+    const std::size_t all = voxelCount(selection.dims);
+    auto kept = roomFor<T>(all);
     values.skip(selection.first);
-    ReadProgress progress(job, kept.size());
+    ReadProgress progress(job, all);
     constexpr std::size_t kAtOnce = std::size_t{1} << 20;
-    for (std::size_t done = 0; done < kept.size();) {
-        const std::size_t count = std::min(kAtOnce, kept.size() - done);
+    for (std::size_t done = 0; done < all;) {
+        const std::size_t count = std::min(kAtOnce, all - done);
         values.read(reinterpret_cast<char*>(kept.data() + done), count);
         done += count;
         progress.add(count);
     }
     values.finish();
-    return {std::move(kept), {0, -1}};
+    return {SampleArray<T>(std::move(kept), all), {0, -1}};
 }
 
 /// The same of all that a deflate stream has, unpacked in one go straight to the samples; empty where that cannot be.
@@ -132,14 +140,13 @@ std::optional<Collected> collectAtOnce(const FileLayout& layout, const Selection
         layout.open || layout.encoding != Encoding::Deflate || isInOtherOrder<T>(layout))
         return {};
     const std::size_t voxels = voxelCount(selection.dims);
-    ZeroedVector<T> kept(voxels + static_cast<std::size_t>((layout.skip + sizeof(T) - 1) / sizeof(T)));
+    auto kept = roomFor<T>(voxels + static_cast<std::size_t>((layout.skip + sizeof(T) - 1) / sizeof(T)));
     auto* const first = reinterpret_cast<char*>(kept.data());
     if (!unpackAtOnce(layout.dataPath, layout.start, layout.zlib, layout.unchecked->toEnd,
                       {first, static_cast<std::size_t>(bytes)}, job))
         return {};
     if (layout.skip > 0) std::memmove(first, first + layout.skip, voxels * sizeof(T));
-    kept.resize(voxels);
-    return Collected{std::move(kept), {0, -1}};
+    return Collected{SampleArray<T>(std::move(kept), voxels), {0, -1}};
 }
 
 /// collect() for an excerpt, and for pieces: one layer of it is in the making while the file goes by.
@@ -147,8 +154,7 @@ template <class T, class Kept, class Convert>
 Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<double> missing, const JobControl& job,
                          const Convert& convert) {
     const Int3 lo = plan.region.lo, size = plan.region.hi - lo;
-    // Padded, so that codes of 8 bits need no copy.
-    ZeroedVector<Kept> kept(voxelCount(plan.dims) + SampleArray<Kept>::kPadding);
+    auto kept = roomFor<Kept>(voxelCount(plan.dims));
     const auto ofRow = static_cast<std::size_t>(size.x);
     const bool asItIs = plan.factors == Int3(1);
     constexpr bool kAsStored = std::is_same_v<Convert, std::identity>;
@@ -185,22 +191,20 @@ Collected collectExcerpt(Rows<T>& rows, const ExcerptPlan& plan, std::optional<d
     return {SampleArray<Kept>(std::move(kept), voxelCount(plan.dims)), asItIs ? ValueRange{0, -1} : means.range()};
 }
 
-/// Where the samples can be used as they lie in the file.
+/// Where all samples, of a large file, can be used as they lie in it.
 template <class T>
-bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
-    return isPlain<T>(layout) && !layout.scaling && isGapless(selection) &&
-           (layout.start + selection.first * sizeof(T)) % sizeof(T) == 0;
+bool isMappable(const FileLayout& layout, const Selection& selection) {
+    return layout.encoding == Encoding::Raw && !layout.open && layout.parts.empty() && layout.pieces.empty() &&
+           !isInOtherOrder<T>(layout) && !layout.scaling && isGapless(selection) &&
+           (layout.start + selection.first * sizeof(T)) % sizeof(T) == 0 &&
+           voxelCount(selection.dims) * sizeof(T) >= kMapBytes;
 }
 
-/// The samples of whole layers as they lie in a large file; empty where that cannot be.
+/// The samples as they lie in the file; empty where the system refuses.
 template <class T>
-std::optional<Samples> mapped(const FileLayout& layout, const Selection& selection, const ExcerptPlan& plan,
-                              const JobControl& job) {
-    const VoxelRegion& region = plan.region;
-    const std::uint64_t bytes = voxelCount(plan.dims) * sizeof(T), first = selection.placeOf({0, 0, region.lo.z});
-    const bool ofLayers = plan.dims == Int3(selection.dims.x, selection.dims.y, region.hi.z - region.lo.z);
-    if (bytes < kMapBytes || !ofLayers || !isAsInMemory<T>(layout, selection)) return {};
-    auto file = MappedFile::map(layout.dataPath, layout.start + first * sizeof(T), bytes);
+std::optional<Samples> mapped(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+    auto file = MappedFile::map(layout.dataPath, layout.start + selection.first * sizeof(T),
+                                voxelCount(selection.dims) * sizeof(T));
     if (!file) return {};
     // Looked at once from end to end, so that a slow disk can be waited for, or not.
     constexpr std::size_t kPage = 4096;
@@ -218,7 +222,8 @@ template <class T, class Kept>
 Collected readAs(const FileLayout& layout, const Selection& selection, const ExcerptPlan& plan,
                  const VolumeSource& source, const JobControl& job) {
     if constexpr (std::is_same_v<T, Kept>)
-        if (auto samples = mapped<T>(layout, selection, plan, job)) return {std::move(*samples), {0, -1}};
+        if (plan.isWhole() && isMappable<T>(layout, selection))
+            if (auto samples = mapped<T>(layout, selection, job)) return {std::move(*samples), {0, -1}};
     if (plan.isWhole()) { // it was not planned for memory where it was to be mapped
         const std::uint64_t bytes = voxelCount(plan.dims) * sizeof(Kept);
         requireMemory(source.then, source.path, plan.dims, sampleTypeOf<Kept>(), bytes, bytes);
@@ -230,9 +235,9 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
             return collectPlain<T>(*openValues<T>(layout, Wanted::All, job), selection, job);
         }
     const auto read = [&](const auto& convert) {
-        return byRows ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, plan.region, job), plan, source.missing,
-                                                job, convert)
-                      : collect<T, Kept>(*openValues<T>(layout, Wanted::All, job), selection, job, convert);
+        return byRows
+                   ? collectExcerpt<T, Kept>(*openRows<T>(layout, selection, job), plan, source.missing, job, convert)
+                   : collect<T, Kept>(*openValues<T>(layout, Wanted::All, job), selection, job, convert);
     };
     if constexpr (std::is_same_v<T, Kept>)
         if (!layout.scaling) return read(std::identity());
@@ -365,8 +370,7 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
         using T = decltype(zero);
         const auto readTo = [&](auto keptZero) {
             using Kept = decltype(keptZero);
-            const bool inFile = std::is_same_v<T, Kept> && isAsInMemory<T>(layout, selection) &&
-                                voxelCount(selection.dims) * sizeof(Kept) >= kMapBytes;
+            const bool inFile = std::is_same_v<T, Kept> && isMappable<T>(layout, selection);
             plan = layout.plan ? *layout.plan : planExcerpt(source, selection.dims, sampleTypeOf<Kept>(), inFile);
             read = readAs<T, Kept>(layout, selection, plan, source, job);
         };

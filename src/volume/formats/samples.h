@@ -124,9 +124,9 @@ std::unique_ptr<UnpackedBytes> unpackedBytes(const StoredValues& stored, const J
 /// What the layout says that can be chosen of.
 FileContents contentsOf(const FileLayout& layout);
 
-/// Samples of this many bytes or more are mapped (MappedFile) rather than read, where the file has them as memory
-/// would: raw, in this machine's byte order, unscaled. Smaller files are read, so that they may change while they are
-/// in use.
+/// Volumes of this many bytes or more are mapped (MappedFile) rather than read, where the file has all their samples as
+/// memory would: raw, in this machine's byte order, unscaled. Smaller files are read, so that they may change while
+/// they are in use; so are regions, which then lie in large pages of memory.
 inline constexpr std::uint64_t kMapBytes = 16u << 20;
 
 /// Reads component source.component of time step source.step, after requireData(); what is still wrong is a FileError.

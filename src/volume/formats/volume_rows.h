@@ -1,7 +1,6 @@
 // The rows of a volume, of which a region is read.
 #pragma once
 
-#include "base/mapped_file.h"
 #include "volume/formats/stored_values.h"
 
 namespace pellucid {
@@ -173,67 +172,10 @@ private:
     std::size_t m_open = 0;
 };
 
-/// Where each value is stored as it is in memory: raw, in this machine's byte order, in one file.
 template <class T>
-bool isPlain(const FileLayout& layout) {
-    return layout.encoding == Encoding::Raw && !layout.open && layout.parts.empty() && layout.pieces.empty() &&
-           !isInOtherOrder<T>(layout);
-}
-
-/// Of a large file whose values are stored as they are in memory: copied from a window of it that is mapped, so that
-/// what lies between the rows is not. Where a window cannot be mapped, rows are read.
-template <class T>
-class MappedRows final : public Rows<T> {
-public:
-    MappedRows(const FileLayout& layout, const Selection& selection, const VoxelRegion& region, const JobControl& job)
-        : m_layout(layout), m_selection(selection), m_job(job), m_end(byteOf(region.hi - 1) + sizeof(T)) {}
-    void read(const Int3& first, int count, int rows, T* to) override {
-        for (int row = 0; row < rows; ++row, to += count) {
-            const Int3 begin = first + Int3(0, row, 0);
-            const unsigned char* from = m_stored ? nullptr : at(begin, static_cast<std::uint64_t>(count) * sizeof(T));
-            if (from == nullptr) return stored().read(begin, count, rows - row, to);
-            std::memcpy(to, from, static_cast<std::size_t>(count) * sizeof(T));
-        }
-    }
-    void finish() override {
-        if (m_stored) m_stored->finish();
-    }
-
-private:
-    static constexpr std::uint64_t kWindow = 16u << 20; ///< bytes: they count where address space is limited
-
-    std::uint64_t byteOf(const Int3& voxel) const { return m_layout.start + m_selection.placeOf(voxel) * sizeof(T); }
-    const unsigned char* at(const Int3& voxel, std::uint64_t bytes) {
-        const std::uint64_t begin = byteOf(voxel);
-        if (!m_window || begin < m_begin || begin + bytes > m_begin + m_window->size()) {
-            m_window.reset(); // before there is another one
-            m_window = MappedFile::map(m_layout.dataPath, begin, std::min(std::max(bytes, kWindow), m_end - begin));
-            m_begin = begin;
-        }
-        return m_window ? m_window->data() + (begin - m_begin) : nullptr;
-    }
-    StoredRows<T>& stored() {
-        if (!m_stored)
-            m_stored = std::make_unique<StoredRows<T>>(openValues<T>(m_layout, Wanted::Some, m_job), m_selection);
-        return *m_stored;
-    }
-
-    const FileLayout& m_layout;
-    const Selection m_selection;
-    const JobControl& m_job;
-    std::uint64_t m_end, m_begin = 0; // bytes of the file: behind the last one, and where the window begins
-    std::shared_ptr<const MappedFile> m_window;
-    std::unique_ptr<StoredRows<T>> m_stored;
-};
-
-template <class T>
-std::unique_ptr<Rows<T>> openRows(const FileLayout& layout, const Selection& selection, const VoxelRegion& region,
-                                  const JobControl& job) {
-    if (isPlain<T>(layout) && selection.stride[0] == 1 && voxelCount(region.hi - region.lo) * sizeof(T) >= kMapBytes)
-        return std::make_unique<MappedRows<T>>(layout, selection, region, job);
-    if (layout.pieces.empty())
-        return std::make_unique<StoredRows<T>>(openValues<T>(layout, Wanted::Some, job), selection);
-    return std::make_unique<PieceRows<T>>(layout.pieces, selection, job);
+std::unique_ptr<Rows<T>> openRows(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+    if (!layout.pieces.empty()) return std::make_unique<PieceRows<T>>(layout.pieces, selection, job);
+    return std::make_unique<StoredRows<T>>(openValues<T>(layout, Wanted::Some, job), selection);
 }
 
 } // namespace pellucid
