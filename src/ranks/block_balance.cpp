@@ -70,7 +70,8 @@ bool cutByWork(const Volume& volume, const TransferFunction& tf, const Clipping&
                                            Int3(std::max(kRayGhosts, then.reach)), volume.dims());
         return isEmpty(region) ? Int3(0) : region.hi - region.lo;
     }();
-    const std::uint64_t held = volume.here() != nullptr ? volume.here()->memoryBytes() : 0,
+    const std::uint64_t held =
+                            volume.here() != nullptr && !volume.here()->isMapped() ? volume.here()->memoryBytes() : 0,
                         needed = voxelCount(dims) * bytesPerSample(volume.sampleType()) +
                                  bytesOf(then, dims, volume.sampleType());
     const bool hasRoom = needed <= availableMemoryBytes() + held;
