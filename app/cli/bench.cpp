@@ -18,7 +18,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct BenchArguments {
     SceneOptions scene;
     std::optional<std::set<BenchRow>> only;
     std::optional<int> repeat;
@@ -53,7 +53,7 @@ std::set<BenchRow> parseRows(const std::string& text, const std::string& option)
     return rows;
 }
 
-void check(const Options& o) {
+void check(const BenchArguments& o) {
     if (!o.onBuiltIn() && o.full)
         throw UsageError("--full works with the built-in volumes only", "--full", "leave out --full or VOLUME");
     if (o.onBuiltIn() && o.scene.volume.anyDetail())
@@ -72,7 +72,7 @@ std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b
 class Run {
 public:
     /// `most`: threads that the user asks for.
-    Run(const Options& options, std::optional<int> most, Progress& progress)
+    Run(const BenchArguments& options, std::optional<int> most, Progress& progress)
         : m_options(options), m_rows(options.rows()), m_progress(progress) {
         SceneOptions scene = options.scene;
         if (options.onBuiltIn()) {
@@ -316,7 +316,7 @@ private:
                 {"ratios", values}};
     }
 
-    const Options& m_options;
+    const BenchArguments& m_options;
     std::set<BenchRow> m_rows;
     Progress& m_progress;
     SceneInputs m_inputs; ///< of the first volume
@@ -326,7 +326,7 @@ private:
     std::string m_mainVolume, m_mainTf; ///< the first ones, which the ratios are about
 };
 
-Answer run(const Options& o, bool threadsGiven, Progress& progress) {
+Answer run(const BenchArguments& o, bool threadsGiven, Progress& progress) {
     check(o);
     Run bench(o, threadsGiven ? std::optional(threadCount()) : std::nullopt, progress);
     bench.memory();
@@ -343,7 +343,7 @@ Answer run(const Options& o, bool threadsGiven, Progress& progress) {
 Command addBench(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "bench", "Measures how fast this machine measures, with 1 and 2 threads (or --threads N)");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<BenchArguments>();
     o->scene.camera.fallback = ViewAngles{30, 20, 1}; // whatever the window opens on: figures stay comparable
     o->scene.volume.add(*app);
     app->get_option("VOLUME")->description("the volume to measure with, as in other commands; without one, sample:knee "

@@ -14,7 +14,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct ColorsArguments {
     SceneOptions scene;
     double difference = kWantedDifference;
     std::optional<std::string> outTf;
@@ -61,7 +61,7 @@ Json jsonOf(const TransferFunction& tf, const std::vector<std::size_t>& among, c
     return json;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const ColorsArguments& o, Progress& progress) {
     const Opened opened = resolve(o.scene, progress);
     const Scene& scene = opened.scene;
     refuse({{scene.colors != nullptr, "the colours of this picture come from variables, not from features", "--hsb",
@@ -85,7 +85,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addColors(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "colors", "Which features look alike to viewers with a colour-vision deficiency, and colours that do not");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ColorsArguments>();
     o->scene.addForData(*app);
     o->scene.tf.add(*app);
     addValue(*app, "--difference", "D", o->difference, realAbove(0, 50),

@@ -17,7 +17,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct CompareArguments {
     std::string a, b;
     SceneOptions scene;
     CameraOptions viewOfB;
@@ -40,7 +40,7 @@ bool isPicture(const std::string& name) {
 
 bool isSession(const std::string& name) { return lowerCase(name).ends_with(".pellucid.json"); }
 
-void check(const Options& o) {
+void check(const CompareArguments& o) {
     const bool a = isPicture(o.a), b = isPicture(o.b);
     if (o.b.empty() && !isSession(o.a))
         throw UsageError("B is missing", o.a, "name what it is compared with; a session alone may keep it");
@@ -51,7 +51,7 @@ void check(const Options& o) {
 }
 
 /// B as the session of A keeps it.
-Scene keptB(const Options& o, const Scene& a, Progress& progress) {
+Scene keptB(const CompareArguments& o, const Scene& a, Progress& progress) {
     Session session = a.session;
     if (!session.comparison->b)
         throw UsageError("the session keeps nothing to compare with", o.a,
@@ -64,7 +64,7 @@ Scene keptB(const Options& o, const Scene& a, Progress& progress) {
     return pellucid::resolve(comparedSession(session), a, toMeasureAndDrawField(), progress.phase("loading"));
 }
 
-Side drawn(const Options& o, bool isB, Progress& progress) {
+Side drawn(const CompareArguments& o, bool isB, Progress& progress) {
     SceneOptions options = o.scene;
     const bool isKept = isB && o.b.empty();
     const std::string& name = isB && !isKept ? o.b : o.a;
@@ -104,7 +104,7 @@ std::string tableOf(const Comparison& comparison) {
     return table.text();
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const CompareArguments& o, Progress& progress) {
     const Stopwatch total;
     check(o);
     const bool files = isPicture(o.a);
@@ -141,7 +141,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addCompare(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "compare", "How alike two pictures are; or two transfer functions, views or frames of a volume, with figures");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<CompareArguments>();
     app->add_option("A", o->a,
                     "a picture (.png, .tif, .exr, .jpg), a session (*.pellucid.json), or a transfer function of "
                     "VOLUME, as --tf of the other commands takes it")

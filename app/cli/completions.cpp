@@ -8,12 +8,12 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct CompletionsArguments {
     std::string shell;
     std::optional<std::string> out;
 };
 
-Answer run(const Options& o, const CLI::App& program) {
+Answer run(const CompletionsArguments& o, const CLI::App& program) {
     const std::string script = completionScript(o.shell, completionWords(program));
     Json json{{"command", "completions"}, {"shell", o.shell}};
     if (!o.out) {
@@ -29,7 +29,7 @@ Answer run(const Options& o, const CLI::App& program) {
 
 Command addCompletions(CLI::App& program) {
     CLI::App* app = program.add_subcommand("completions", "Writes what a shell needs to complete command lines");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<CompletionsArguments>();
     app->add_option("SHELL", o->shell, "bash, zsh or fish")->required()->type_name("");
     addOutputFile(*app, "--out", o->out, "write the script to this file (default: to standard output)");
     return {app, [o, &program](Progress&) { return run(*o, program); }};

@@ -13,7 +13,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct ConvertArguments {
     SceneOptions scene;
     std::optional<SampleType> type;
     bool allFrames = false;
@@ -31,7 +31,7 @@ std::uintmax_t bytesAt(const std::string& path, std::error_code& ec) {
     return bytes;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const ConvertArguments& o, Progress& progress) {
     if (o.out.empty()) throw UsageError("the file name is empty", "--out", "name the file to write");
     if (!o.to) atOption("--out " + o.out, [&] { checkVolumeSuffix(o.out); });
     addOutputFile(o.out, "--out");
@@ -78,7 +78,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addConvert(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "convert", "Writes a volume in another file format, or a part of it; or a transfer function");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ConvertArguments>();
     o->scene.addForData(*app);
     addValue(
         *app, "--type", "TYPE",

@@ -45,7 +45,7 @@ Target targetNamed(const std::string& name) {
 }
 
 /// A transfer function, with what it is written for and what is to be said of it.
-struct Source {
+struct TfSource {
     TfToWrite writing;
     std::vector<std::string> notices;
 };
@@ -55,8 +55,8 @@ TransferFunction asWritten(const ReadTf& read, const Geometry& geometry) {
     return withOpacitiesPer(read.tf, geometry.d0() / read.length.inWorld(geometry));
 }
 
-Source sourceOf(const TfConversion& conversion, const SceneOptions& options, const std::string& out,
-                Progress& progress) {
+TfSource sourceOf(const TfConversion& conversion, const SceneOptions& options, const std::string& out,
+                  Progress& progress) {
     const std::string spec = *options.volume.path;
     const bool isAutomatic = spec == kAutomaticTf;
     std::vector<std::string> notices;

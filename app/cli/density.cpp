@@ -18,14 +18,14 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct DensityArguments {
     SceneOptions scene;
     LimitOptions limits;
     std::optional<double> coverage;
     std::optional<std::string> outTf;
 };
 
-struct Seconds {
+struct DensitySeconds {
     double saliency = 0, curve = 0, total = 0;
 };
 
@@ -43,7 +43,7 @@ DensityPoint chosenPoint(const DensityCurve& curve, double coverage, MeasureInpu
 }
 
 std::string textOf(const DensityCurve& curve, const std::optional<DensityPoint>& chosen,
-                   const std::vector<std::string>& names, const std::string& engine, const Seconds& seconds) {
+                   const std::vector<std::string>& names, const std::string& engine, const DensitySeconds& seconds) {
     std::vector<std::string> columns{"coverage"};
     for (const std::string& name : names) columns.push_back(name);
     columns.emplace_back("F");
@@ -68,7 +68,7 @@ Json jsonOf(const DensityPoint& point) {
     return jsonFromShares({point.opacity, point.vws, point.objective, point.coverage});
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const DensityArguments& o, Progress& progress) {
     const Stopwatch total;
     refuse({{o.outTf && !o.coverage, "no picture is chosen", "--out-tf", "say which one by --coverage, such as 0.5"}});
     const Opened opened = resolve(o.scene, progress, {toMeasure("following"), true});
@@ -79,7 +79,7 @@ Answer run(const Options& o, Progress& progress) {
     const std::vector<OpacityLimits> limits = o.limits.of(scene);
     const MeasureInput input = measureInput(scene);
     Workspace workspace;
-    Seconds seconds;
+    DensitySeconds seconds;
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
     seconds.saliency = saliencySeconds;
 
@@ -120,7 +120,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addDensity(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "density", "Opacities from faint to strong with which each feature keeps its share of saliency");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<DensityArguments>();
     o->scene.addForFigures(*app);
     o->limits.add(*app);
     addValue(*app, "--coverage", "C", o->coverage, realAbove(0, 1),

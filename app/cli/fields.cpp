@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct FieldsArguments {
     SceneOptions scene;
     std::string out;
     std::vector<std::string> features; ///< names, or "all"
@@ -53,7 +53,7 @@ std::string safeName(const std::string& name) {
     return safe.empty() ? "_" : safe;
 }
 
-std::vector<int> featuresOf(const Options& o, const TransferFunction& tf) {
+std::vector<int> featuresOf(const FieldsArguments& o, const TransferFunction& tf) {
     std::vector<int> chosen;
     const auto add = [&](int f) {
         if (std::find(chosen.begin(), chosen.end(), f) == chosen.end()) chosen.push_back(f);
@@ -85,7 +85,7 @@ std::vector<Output> outputsOf(const std::vector<FieldKind>& kinds, const std::ve
     return outputs;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const FieldsArguments& o, Progress& progress) {
     const Stopwatch total;
     const std::vector<FieldKind> kinds =
         o.kinds.empty() ? std::vector<FieldKind>(kUsual.begin(), kUsual.end()) : o.kinds;
@@ -148,7 +148,7 @@ Command addFields(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "fields",
         "Writes visibility, saliency and each voxel's share of the VWS as volumes (float32, the volume's grid)");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<FieldsArguments>();
     o->scene.addForFigures(*app);
     addOutputFolder(
         *app, "--out", o->out,

@@ -10,7 +10,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct FigureArguments {
     SceneOptions scene;
     SettingOptions<FigureSettings> figure;
     std::string out;
@@ -30,7 +30,7 @@ Json jsonFromRows(const std::vector<FigureRow>& rows) {
 
 std::string millimetres(double length) { return fixedText(length, 1); }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const FigureArguments& o, Progress& progress) {
     const Opened opened = resolve(o.scene, progress, {toMeasure("drawing the figure"), true});
     const Scene& scene = opened.scene;
     const FigureTask task{scene, o.scene.picture.pictureOf(scene).settings, o.figure.values(), o.out};
@@ -58,7 +58,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addFigure(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "figure", "A figure for print: the picture with scale, legend and bars of shares as lines and letters");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<FigureArguments>();
     o->scene.addForFigures(*app);
     o->scene.picture.addLook(*app);
     o->scene.ground.add(*app);

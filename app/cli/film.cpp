@@ -16,7 +16,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct FilmArguments {
     SceneOptions scene;
     SettingOptions<FilmSettings> film;
     std::optional<std::string> views;
@@ -27,7 +27,7 @@ struct Options {
 };
 
 /// What can be told before the volume is read.
-void check(const Options& o) {
+void check(const FilmArguments& o) {
     if (o.out.empty()) throw isRequired("--out", "film");
     atOption("--out", [&] { checkFilmSuffix(o.out); });
     const FilmKind kind = o.film.values().kind;
@@ -51,7 +51,7 @@ void check(const Options& o) {
 }
 
 /// Which pictures the task has.
-void addShots(const Options& o, FilmTask& task) {
+void addShots(const FilmArguments& o, FilmTask& task) {
     const FilmSettings& settings = o.film.values();
     if (settings.kind == FilmKind::Keys) {
         task.keys =
@@ -78,7 +78,7 @@ FilmResult make(const FilmTask& task, Progress& progress) {
     }
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const FilmArguments& o, Progress& progress) {
     check(o);
     const FilmSettings& settings = o.film.values();
     const Opened opened = resolve(o.scene, progress, {toView("drawing")});
@@ -120,7 +120,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addFilm(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("film", "A film of a volume: turning, over time, from view to view, or from key to key");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<FilmArguments>();
     o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     o->scene.picture.add(*app);
     o->scene.ground.add(*app);

@@ -13,7 +13,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct GenerateArguments {
     std::string name;
     int size = 0;
     std::uint32_t seed = 1;
@@ -36,7 +36,7 @@ std::string fileOf(const std::string& out, int frame) {
     return (path.parent_path() / (path.stem().string() + "_" + number + path.extension().string())).string();
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const GenerateArguments& o, Progress& progress) {
     if (o.out.empty()) throw UsageError("the file name is empty", "--out", "name the file to write");
     checkSuffix(o.out);
     const SampleInfo& info = sampleInfo(o.name);
@@ -79,7 +79,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addGenerate(CLI::App& program) {
     CLI::App* app = program.add_subcommand("generate", "Writes a built-in volume as a NRRD file");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<GenerateArguments>();
     app->add_option_function<std::string>(
            "NAME", [o](const std::string& text) { o->name = text.starts_with("sample:") ? text.substr(7) : text; },
            "a name that `pellucid-cli samples` lists")

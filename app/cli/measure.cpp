@@ -19,7 +19,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct MeasureArguments {
     SceneOptions scene;
     bool jacobian = false, occlusion = false;
     bool pictured = false;               ///< --2dfs
@@ -41,7 +41,7 @@ struct Options {
     }
 };
 
-struct Seconds {
+struct MeasureSeconds {
     double visibility = 0, saliency = 0, total = 0;
     std::optional<double> jacobian;
     std::optional<double> pictures; ///< to draw them
@@ -86,7 +86,7 @@ struct Found {
     std::optional<Pictured> pictured;
     std::optional<PictureShares> shares;
     std::string engine;
-    Seconds seconds;
+    MeasureSeconds seconds;
 };
 
 std::string sizeText(const Pictured& p) {
@@ -240,13 +240,13 @@ std::vector<std::string> writeMaps(const std::string& folder, const FeaturePictu
     return paths;
 }
 
-PictureInput pictureOf(const Options& o, const Scene& scene) {
+PictureInput pictureOf(const MeasureArguments& o, const Scene& scene) {
     PictureOptions options = o.scene.picture;
     options.size = o.size.value_or(ImageSize{});
     return options.pictureOf(scene);
 }
 
-PictureShares sharesOf(const Options& o, const Scene& scene, Seconds& seconds, Progress& progress) {
+PictureShares sharesOf(const MeasureArguments& o, const Scene& scene, MeasureSeconds& seconds, Progress& progress) {
     const PictureInput picture = pictureOf(o, scene);
     const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
@@ -256,7 +256,7 @@ PictureShares sharesOf(const Options& o, const Scene& scene, Seconds& seconds, P
     return shares;
 }
 
-Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& progress) {
+Pictured look(const MeasureArguments& o, const Scene& scene, MeasureSeconds& seconds, Progress& progress) {
     const PictureInput picture = pictureOf(o, scene);
     const auto renderer = makeRenderer(scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
@@ -272,14 +272,14 @@ Pictured look(const Options& o, const Scene& scene, Seconds& seconds, Progress& 
     return pictured;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const MeasureArguments& o, Progress& progress) {
     const Stopwatch total;
     o.check();
     const Opened opened = resolve(o.scene, progress, {toMeasure("measuring"), true});
     const MeasureInput input = measureInput(opened.scene);
     Workspace workspace;
     Found found;
-    Seconds& seconds = found.seconds;
+    MeasureSeconds& seconds = found.seconds;
     const Prepared prepared = prepare(workspace, input, progress);
     found.engine = prepared.engine;
     seconds.saliency = prepared.saliencySeconds;
@@ -313,7 +313,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addMeasure(CLI::App& program) {
     CLI::App* app = program.add_subcommand("measure", "Visibility and visibility-weighted saliency of each feature");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<MeasureArguments>();
     o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
     app->add_flag("--jacobian", o->jacobian,
                   "also print the derivatives of each VWS with respect to each feature's opacity");

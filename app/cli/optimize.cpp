@@ -23,7 +23,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct OptimizeArguments {
     SceneOptions scene;
     SettingOptions<OptimizeOptions> search;
     LimitOptions limits;
@@ -33,7 +33,7 @@ struct Options {
     ReportOptions report;
 };
 
-struct Seconds {
+struct OptimizeSeconds {
     double saliency = 0, search = 0, total = 0;
 };
 
@@ -48,7 +48,7 @@ std::string seenLines(const OptimizeResult& r) {
 }
 
 std::string textOf(const OptimizeResult& r, const std::vector<std::string>& names, const std::string& engine,
-                   const Seconds& seconds) {
+                   const OptimizeSeconds& seconds) {
     Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after", "cover"});
     const OptimizeState& start = r.history.front();
     const OptimizeState& best = r.history[r.best];
@@ -69,7 +69,7 @@ std::string textOf(const OptimizeResult& r, const std::vector<std::string>& name
 }
 
 Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volume& volume, const std::string& engine,
-            const Seconds& seconds) {
+            const OptimizeSeconds& seconds) {
     Json json = jsonFromOptimization(r, options);
     addSeen(json, r);
     json["engine"] = engine;
@@ -78,7 +78,7 @@ Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volum
     return json;
 }
 
-std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options, const OptimizeResult& r) {
+std::optional<Error> failureOf(const OptimizeArguments& o, const OptimizeOptions& options, const OptimizeResult& r) {
     if (!o.requireConverged || r.converged()) return {};
     return Error("the targets were not reached (" + offTargetText(r.history[r.best].objective) + ", wanted below " +
                      plainText(100 * options.tolerance) + " %)",
@@ -87,7 +87,7 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
                  "raise --max-iterations or --tolerance, or choose other targets");
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const OptimizeArguments& o, Progress& progress) {
     const Stopwatch total;
     o.report.check();
     if (!o.targets && !o.scene.sessionFile) throw isRequired("--target", "optimize");
@@ -120,7 +120,7 @@ Answer run(const Options& o, Progress& progress) {
     }
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
-    const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
+    const OptimizeSeconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) addTo(notices, writeTfFile(toWrite(result.tf, scene, *o.outTf), *o.outTf));
     if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
     std::string text =
@@ -155,7 +155,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addOptimize(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("optimize", "Finds the opacities that give each feature its target saliency");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<OptimizeArguments>();
     o->scene.camera.mayBeBest = true;
     o->scene.addForFigures(*app);
     addValue(

@@ -10,13 +10,13 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct PlotArguments {
     SceneOptions scene;
     std::string out;
     double highest = 0; ///< 0: what fits
 };
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const PlotArguments& o, Progress& progress) {
     const Opened opened = resolve(o.scene, progress);
     const Scene& scene = opened.scene;
     const Plot plot =
@@ -35,7 +35,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addPlot(CLI::App& program) {
     CLI::App* app = program.add_subcommand("plot", "Draws the transfer function over the histogram of the volume");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<PlotArguments>();
     o->scene.addForData(*app);
     o->scene.tf.add(*app);
     addOutputFile(*app, "--out", o->out, "the drawing to write: .svg or .png", [](const std::string& path) {

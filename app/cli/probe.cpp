@@ -16,7 +16,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct ProbeArguments {
     SceneOptions scene;
     std::optional<std::string> pixel; ///< "X,Y"
 };
@@ -127,8 +127,8 @@ Json jsonOf(const RayProbe& p, const Scene& scene, const Int3& pixel, const Imag
     return json;
 }
 
-Answer run(const Options& given, Progress& progress) {
-    Options o = given;
+Answer run(const ProbeArguments& given, Progress& progress) {
+    ProbeArguments o = given;
     if (!o.pixel && o.scene.sessionFile && o.scene.volume.path && looksLikePixel(*o.scene.volume.path))
         std::swap(o.pixel, o.scene.volume.path);
     if (!o.pixel) throw isRequired("X,Y", "probe");
@@ -146,7 +146,7 @@ Answer run(const Options& given, Progress& progress) {
 Command addProbe(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("probe", "What the ray of a pixel meets: intensities, opacity, each feature's share");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ProbeArguments>();
     o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     app->add_option_function<std::string>(
            "PIXEL", [o](const std::string& text) { o->pixel = text; },

@@ -19,7 +19,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct ProposeArguments {
     SceneOptions scene;
     std::optional<std::string> outTf;
 };
@@ -93,7 +93,7 @@ std::string textOf(const Holder& holder) {
            ": it is drawn faintly and not measured; --holder 0 leaves it out, --holder 1 draws it like the rest";
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const ProposeArguments& o, Progress& progress) {
     Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Stopwatch looking;
     const Volume& volume = *opened.scene.volume;
@@ -122,7 +122,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addPropose(CLI::App& program) {
     CLI::App* app = program.add_subcommand("propose", "A transfer function from what the data hold, and why");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ProposeArguments>();
     o->scene.addForData(*app);
     addOutputFile(*app, "--out-tf", o->outTf, "write the proposed transfer function" + std::string(kTfFileHelp));
     return {app, [o](Progress& progress) { return run(*o, progress); }};

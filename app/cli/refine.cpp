@@ -24,7 +24,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct RefineArguments {
     SceneOptions scene;
     SettingOptions<RefineSteps> steps;
     PriorityOptions priority;
@@ -50,7 +50,7 @@ void fixPoint(TransferFunction& tf, double x) {
 }
 
 /// Refuses options of a picture that nothing looks at.
-void checkPicture(const Options& o, bool looks) {
+void checkPicture(const RefineArguments& o, bool looks) {
     if (looks) return;
     const CameraOptions& camera = o.scene.camera;
     const char* of = o.size                            ? "--size WxH"
@@ -109,7 +109,7 @@ std::string textOf(const RefineOptions& options, const TransferFunction& before,
     return text + points.text();
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const RefineArguments& o, Progress& progress) {
     o.priority.check(o.pictureSize());
     const bool hasSession = o.scene.sessionFile.has_value(); // which may bring a region
     if (!hasSession) checkPicture(o, o.priority.region.has_value());
@@ -157,7 +157,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addRefine(CLI::App& program) {
     CLI::App* app = program.add_subcommand("refine", "Evens out the information along the transfer function (entropy)");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<RefineArguments>();
     o->scene.addForView(*app, VolumeOptions::SizeIs::Both);
     o->priority.add(*app, o->scene.volume);
     o->scene.volume.addSizeOfBoth(

@@ -46,7 +46,7 @@ SimulatedVision parseVision(const std::string& text, const std::string& option) 
     return simulated;
 }
 
-struct Options {
+struct RenderArguments {
     SceneOptions scene;
     SliceOptions slice;
     std::string out;    ///< empty: layers alone
@@ -63,7 +63,7 @@ bool isJpeg(const std::string& path) {
 }
 
 /// What can be told before the volume is read.
-void check(const Options& o) {
+void check(const RenderArguments& o) {
     const bool slice = o.slice.at.has_value(), field = o.scene.drawsField();
     const bool mode = o.scene.picture.given.has("mode"), ground = o.scene.ground.path.has_value();
     refuse({{o.scene.picture.transparent && isJpeg(o.out), "a JPEG file cannot be transparent",
@@ -85,7 +85,7 @@ void check(const Options& o) {
 }
 
 /// Everything that the annotations depend on. What spheres and boxes say is measured only where it is shown.
-AnnotationInput annotationsOf(const Options& o, const Scene& scene, const PictureInput& picture,
+AnnotationInput annotationsOf(const RenderArguments& o, const Scene& scene, const PictureInput& picture,
                               const std::optional<Field>& field, Progress& progress) {
     AnnotationInput input =
         field ? fieldAnnotationInput(picture, scene, *field, o.annotate) : annotationInput(picture, o.annotate);
@@ -97,7 +97,7 @@ AnnotationInput annotationsOf(const Options& o, const Scene& scene, const Pictur
 }
 
 /// What can be told of a slice as soon as it is known whether the session, too, wants a field.
-void checkSlice(const Options& o, bool field) {
+void checkSlice(const RenderArguments& o, bool field) {
     if (!o.slice.at) return;
     AnnotationChoice others = o.annotate;
     others.measures = false; // of slices of anything
@@ -143,8 +143,8 @@ struct Drawn {
     Json slice = nullptr;    ///< where it lies; null: it is none
 };
 
-Drawn drawSlice(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
-                Progress& progress) {
+Drawn drawSlice(const RenderArguments& o, const Scene& scene, const PictureInput& picture,
+                const std::optional<Field>& field, Progress& progress) {
     const SliceInput input = o.slice.inputOf(scene, field ? &*field : nullptr);
     const Geometry& g = input.volume->geometry();
     const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
@@ -190,7 +190,7 @@ Drawn drawPreview(const PictureInput& picture, Progress& progress) {
 }
 
 /// Without figures in it, unless these are asked for.
-CaptionFacts factsOf(const Options& o, const Scene& scene, Progress& progress) {
+CaptionFacts factsOf(const RenderArguments& o, const Scene& scene, Progress& progress) {
     if (!o.caption) return captionFacts(scene, {});
     Workspace workspace;
     const MeasureInput input = measureInput(scene);
@@ -201,7 +201,7 @@ CaptionFacts factsOf(const Options& o, const Scene& scene, Progress& progress) {
 }
 
 /// What a file of these, at `path`, says of itself. `slice`: the name of the one that it shows; empty: none.
-PictureText textOf(const Options& o, const Scene& scene, const std::string& slice, const std::string& path,
+PictureText textOf(const RenderArguments& o, const Scene& scene, const std::string& slice, const std::string& path,
                    Progress& progress) {
     if (o.noMetadata) return {};
     const CaptionFacts facts = factsOf(o, scene, progress);
@@ -215,7 +215,7 @@ PictureText textOf(const Options& o, const Scene& scene, const std::string& slic
 }
 
 /// Draws and writes them. Throws UsageError where the picture has none.
-void writeLayersOf(const Options& o, const Scene& scene, const PictureInput& picture, Progress& progress) {
+void writeLayersOf(const RenderArguments& o, const Scene& scene, const PictureInput& picture, Progress& progress) {
     const RenderSettings& settings = picture.settings;
     checkLayers(picture.tf, settings);
     const double bytes = bytesOfLayers(settings.width, settings.height, picture.tf.features.size());
@@ -226,15 +226,15 @@ void writeLayersOf(const Options& o, const Scene& scene, const PictureInput& pic
     writeLayers(layers, picture.tf.features, o.layers, text, progress.phase("writing"));
 }
 
-Drawn drawView(const Options& o, const Scene& scene, const PictureInput& picture, const std::optional<Field>& field,
-               Progress& progress) {
+Drawn drawView(const RenderArguments& o, const Scene& scene, const PictureInput& picture,
+               const std::optional<Field>& field, Progress& progress) {
     Drawn drawn = o.preview ? drawPreview(picture, progress) : drawPicture(scene, picture, progress);
     if (o.annotate.any()) drawMarks(drawn.image, annotationMarks(annotationsOf(o, scene, picture, field, progress)));
     return drawn;
 }
 
 /// Where nothing but layers is written.
-Answer answerOfLayers(const Options& o, const Opened& opened, const PictureInput& picture, double seconds) {
+Answer answerOfLayers(const RenderArguments& o, const Opened& opened, const PictureInput& picture, double seconds) {
     const RenderSettings& settings = picture.settings;
     Json json{{"command", "render"}, {"engine", "cpu"}, {"volume", jsonFromVolume(*opened.scene.volume)}};
     json["layers"] = o.layers;
@@ -246,7 +246,7 @@ Answer answerOfLayers(const Options& o, const Opened& opened, const PictureInput
             std::move(json), opened.notices()};
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const RenderArguments& o, Progress& progress) {
     const Stopwatch total;
     check(o);
     const bool field = o.scene.drawsField();
@@ -308,7 +308,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addRender(CLI::App& program) {
     CLI::App* app = program.add_subcommand("render", "Writes the picture of a volume");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<RenderArguments>();
     o->scene.addForView(*app, VolumeOptions::SizeIs::Image);
     o->scene.engine.add(*app);
     o->scene.engine.addDefinitions(*app);

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kPageFile = "index.html";
 constexpr int kMostSideBySide = 64;
 
-struct Options {
+struct ReproduceArguments {
     std::vector<std::string> names;
     std::optional<std::string> out, data, index;
     int sampleSize = DeskSettings{}.sampleSize;
@@ -57,7 +57,7 @@ fs::path ownPath() {
     return path;
 }
 
-DeskSettings settingsOf(const Options& o) {
+DeskSettings settingsOf(const ReproduceArguments& o) {
     DeskSettings settings;
     settings.program = ownPath();
     settings.folder = fs::absolute(o.out.value_or("."));
@@ -113,7 +113,7 @@ void takeCommonOptions(const CLI::App& app, DeskSettings& settings) {
         for (const std::string& value : app.get_option(name)->results()) settings.common.emplace_back(name, value);
 }
 
-Answer run(const Options& o, const CLI::App& app, Progress& progress) {
+Answer run(const ReproduceArguments& o, const CLI::App& app, Progress& progress) {
     const Stopwatch total;
     const std::vector<Item> chosen = itemsShowing(o.names);
     DeskSettings settings = settingsOf(o);
@@ -149,7 +149,7 @@ Answer run(const Options& o, const CLI::App& app, Progress& progress) {
 Command addReproduce(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "reproduce", "Does figures and tables of the thesis again, as a page with its numbers beside");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ReproduceArguments>();
     app->add_option("ITEM", o->names, "figures and tables, such as 3.4 or table-3.2 (default: all; --list names them)")
         ->type_name("");
     addOutputFolder(*app, "--out", o->out,

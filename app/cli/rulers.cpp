@@ -11,7 +11,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct RulersArguments {
     SceneOptions scene;
     RulerOptions rulers;
     std::optional<std::string> csv;
@@ -61,7 +61,7 @@ Json jsonOf(const Measured& measured, const Scene& scene) {
     return json;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const RulersArguments& o, Progress& progress) {
     const Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Scene& scene = opened.scene;
     const Geometry& geometry = scene.volume->geometry();
@@ -80,7 +80,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addRulers(CLI::App& program) {
     CLI::App* app = program.add_subcommand("rulers", "Distances and angles; mean, spread and range of the values in "
                                                      "spheres and boxes");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<RulersArguments>();
     o->scene.addForData(*app);
     o->scene.coordinates.add(*app);
     o->rulers.add(*app);

@@ -10,11 +10,11 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct SaliencyMapArguments {
     std::string image, out;
 };
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const SaliencyMapArguments& o, Progress& progress) {
     const Stopwatch total;
     addInputFile(o.image);
     const Image image = readImage(o.image);
@@ -40,7 +40,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addSaliencyMap(CLI::App& program) {
     CLI::App* app = program.add_subcommand("saliency-map", "What catches the eye in a picture, as a map");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<SaliencyMapArguments>();
     app->add_option("IMAGE", o->image, "a picture: PNG, TIFF, EXR, JPEG or another that OpenImageIO reads")
         ->required()
         ->type_name("");

@@ -44,7 +44,7 @@ namespace {
 
 using Mode = AdaptSettings::Mode;
 
-struct Options {
+struct SequenceArguments {
     SceneOptions scene;
     SettingOptions<AdaptSettings> adapt;
     SettingOptions<OptimizeOptions> search;
@@ -69,11 +69,13 @@ std::string frameName(int frame, const char* suffix) {
     std::snprintf(name.data(), name.size(), "frame_%04d", frame);
     return std::string(name.data()) + suffix;
 }
-std::string inFolder(const Options& o, const std::string& name) { return (fs::path(o.out) / name).string(); }
-std::string fileOf(const Options& o, int frame, const char* suffix) { return inFolder(o, frameName(frame, suffix)); }
+std::string inFolder(const SequenceArguments& o, const std::string& name) { return (fs::path(o.out) / name).string(); }
+std::string fileOf(const SequenceArguments& o, int frame, const char* suffix) {
+    return inFolder(o, frameName(frame, suffix));
+}
 
 /// Before the first of them is written, or worked for.
-void announceFrames(const Options& o, int from, int size) {
+void announceFrames(const SequenceArguments& o, int from, int size) {
     for (int frame = from; frame < size; ++frame) {
         addOutputFile(o.out, frameName(frame, kTfSuffix), "--out");
         if (!o.noPictures) addOutputFile(o.out, frameName(frame, kPictureSuffix), "--out");
@@ -87,7 +89,7 @@ void checkMovieSuffix(const std::string& path) {
 }
 
 /// What can be told before the volume is read.
-void check(const Options& o) {
+void check(const SequenceArguments& o) {
     for (const char* name : kCurves) addOutputFile(o.out, name, "--out");
     refuse({{o.scene.picture.transparent, "flicker cannot be measured on a transparent background",
              "--background transparent", "give a colour"},
@@ -102,7 +104,7 @@ void check(const Options& o) {
 }
 
 /// Refuses options of refinement in another mode.
-void checkRefining(const Options& o, const Session& session) {
+void checkRefining(const SequenceArguments& o, const Session& session) {
     const char* priority = o.priority.given();
     if (session.adapt->mode == Mode::Refine) return requireOwnSteps(session.measure->profile, o.steps);
     const std::string of = priority != nullptr        ? priority
@@ -174,7 +176,7 @@ void take(const Json& json, FrameFigures& f) {
 
 class Sequence {
 public:
-    Sequence(const Options& o, Scene scene, Progress& progress)
+    Sequence(const SequenceArguments& o, Scene scene, Progress& progress)
         : m_o(o), m_scene(std::move(scene)), m_progress(progress) {}
 
     Answer run(const Opened& opened);
@@ -208,7 +210,7 @@ private:
     /// While one of these lives other ranks have frames of their own, where frames are divided.
     std::unique_ptr<WorkAlone> apart() const { return m_work.parts > 1 ? std::make_unique<WorkAlone>() : nullptr; }
 
-    const Options& m_o;
+    const SequenceArguments& m_o;
     Scene m_scene; ///< of the start frame; its session has all transfer functions that there are so far
     Progress& m_progress;
     int m_start = 0;
@@ -724,7 +726,7 @@ Answer Sequence::run(const Opened& opened) {
     return answer;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const SequenceArguments& o, Progress& progress) {
     check(o);
     if (o.adapt.values().mode == Mode::Optimize && !o.targets && !o.scene.sessionFile)
         throw isRequired("--target", "sequence");
@@ -744,7 +746,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addSequence(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "sequence", "Draws and measures the frames of a series, each under a transfer function that may follow them");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<SequenceArguments>();
     o->scene.addForFigures(*app, VolumeOptions::SizeIs::ImageWithRegion);
     o->adapt.add(*app);
     o->priority.add(*app, o->scene.volume);

@@ -13,7 +13,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct ShareArguments {
     SceneOptions scene;
     SettingOptions<ShareSettings> share;
     std::string out;
@@ -33,7 +33,7 @@ std::string textOf(const SharedPage& page, const std::string& path) {
     return text + "\n";
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const ShareArguments& o, Progress& progress) {
     refuse({{o.scene.picture.transparent, "a page has no transparent background", "--background transparent",
              "give a colour"}});
     if (o.out.empty()) throw isRequired("--out", "share");
@@ -68,7 +68,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addShare(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("share", "One HTML file that shows the volume in a browser, without a network");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ShareArguments>();
     o->scene.addForFigures(*app);
     o->scene.picture.addLook(*app);
     o->share.add(*app, "Page");

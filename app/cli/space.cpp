@@ -17,7 +17,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct SpaceArguments {
     SceneOptions scene;
     std::optional<TargetInput> targets;
     std::optional<std::vector<std::string>> features;
@@ -41,7 +41,7 @@ ViewAngles parseSpaceView(const std::string& text, const std::string& option) {
 }
 
 /// The methods whose paths are drawn, and "runs".
-void parsePaths(const std::string& text, const std::string& option, Options& o) {
+void parsePaths(const std::string& text, const std::string& option, SpaceArguments& o) {
     o.methods.clear();
     o.runs = false;
     for (const std::string& word : split(text, ',')) {
@@ -53,14 +53,14 @@ void parsePaths(const std::string& text, const std::string& option, Options& o) 
 }
 
 /// What can be told before the volume is read.
-void check(const Options& o) {
+void check(const SpaceArguments& o) {
     if (!o.targets && !o.scene.sessionFile) throw isRequired("--target", "space");
     if (o.runs && !o.scene.sessionFile)
         throw UsageError("runs come from a session, and none is given", "--paths",
                          "name methods, or give --session FILE");
 }
 
-ParameterAxes axesOf(const Options& o, const Scene& scene, const std::vector<double>& targets) {
+ParameterAxes axesOf(const SpaceArguments& o, const Scene& scene, const std::vector<double>& targets) {
     const TransferFunction tf = scene.wantedTf();
     ParameterAxes axes = o.axes;
     if (!o.features) {
@@ -81,7 +81,7 @@ ParameterAxes axesOf(const Options& o, const Scene& scene, const std::vector<dou
 }
 
 /// All searches begin at the opacities of the transfer function, and see the same volume as the samples.
-std::vector<SpacePath> searchPaths(const Options& o, Workspace& workspace, const MeasureInput& input,
+std::vector<SpacePath> searchPaths(const SpaceArguments& o, Workspace& workspace, const MeasureInput& input,
                                    const Scene& scene, const ParameterSpace& space, Progress& progress, Json& json) {
     std::vector<SpacePath> paths;
     if (o.runs) paths = pathsOfRuns(*scene.session.runs, scene.tf, space.axes);
@@ -163,7 +163,7 @@ Json jsonOf(const ParameterSpace& space, const std::vector<std::string>& names) 
 }
 
 /// Without paths.
-SpaceView viewOf(const Options& o, const Scene& scene, const ParameterSpace& space, int shown) {
+SpaceView viewOf(const SpaceArguments& o, const Scene& scene, const ParameterSpace& space, int shown) {
     SpaceView view;
     view.shown = shown;
     for (const Feature& f : scene.tf.features) {
@@ -179,7 +179,7 @@ SpaceView viewOf(const Options& o, const Scene& scene, const ParameterSpace& spa
 }
 
 /// Writes the files that are asked for, and returns their names.
-std::vector<std::string> write(const Options& o, const ParameterSpace& space, const SpaceView& view,
+std::vector<std::string> write(const SpaceArguments& o, const ParameterSpace& space, const SpaceView& view,
                                Progress& progress) {
     if (o.out) writeImage(spaceImage(space, view, progress.phase("rendering")), *o.out);
     if (o.save) {
@@ -193,7 +193,7 @@ std::vector<std::string> write(const Options& o, const ParameterSpace& space, co
     return files;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const SpaceArguments& o, Progress& progress) {
     const Stopwatch total;
     check(o);
     const Opened opened = resolve(o.scene, progress, {toMeasure("sampling"), true});
@@ -236,7 +236,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addSpace(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "space", "Shows how VWS and distance from the targets depend on the opacities of two or three features");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<SpaceArguments>();
     o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
     addValue(*app, "--target", kTargetForms, o->targets, TargetInput::parse,
              "shares of attention, as in optimize; required unless a session has targets");

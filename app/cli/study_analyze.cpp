@@ -14,7 +14,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct StudyAnalyzeArguments {
     std::string folder;
     StudyAnalysisOptions analysis;
     std::optional<std::string> out, csv;
@@ -121,7 +121,7 @@ Json agreementJson(const StudyAnalysis& analysis) {
     return json;
 }
 
-Answer answerOf(const Options& o, const StudyAnalysis& analysis) {
+Answer answerOf(const StudyAnalyzeArguments& o, const StudyAnalysis& analysis) {
     std::string text = participantsText(analysis) + "\n" + predictionsText(analysis);
     for (const std::string& sentence : sentencesOf(analysis)) text += sentence + "\n";
     Json json{{"command", "study analyze"},        {"folder", o.folder},
@@ -139,7 +139,7 @@ Answer answerOf(const Options& o, const StudyAnalysis& analysis) {
     return answer;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const StudyAnalyzeArguments& o, Progress& progress) {
     const Stopwatch total;
     StudyReport report = makeStudyReport(o.folder, o.analysis, progress.phase("analysis"));
     report.command = commandLine();
@@ -165,7 +165,7 @@ void checkSuffix(const std::string& path, const std::string& suffix, const std::
 
 Command addStudyAnalyze(CLI::App& study) {
     CLI::App* app = study.add_subcommand("analyze", "What came of a study: opinions, and what predicts them");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<StudyAnalyzeArguments>();
     app->add_option("DIR", o->folder, "the folder that a study was prepared into")->required()->type_name("");
     addOutputFile(*app, "--out", o->out, "write the report, one self-contained page: .html",
                   [](const std::string& path) { checkSuffix(path, ".html", "--out"); });

@@ -9,7 +9,7 @@ namespace pellucid::cli {
 
 namespace {
 
-struct Options {
+struct StudyPrepareArguments {
     std::string study, out;
     SettingOptions<MeasureSettings> engine;
 };
@@ -36,7 +36,7 @@ Json jsonOf(const Study& study) {
     return stimuli;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const StudyPrepareArguments& o, Progress& progress) {
     const Stopwatch total;
     const Study study = readStudy(o.study);
     const std::optional<EngineChoice> engine =
@@ -60,7 +60,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addStudyPrepare(CLI::App& study) {
     CLI::App* app = study.add_subcommand("prepare", "Draw all pictures of a study and measure them");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<StudyPrepareArguments>();
     app->add_option("STUDY", o->study, "a study, *.study.json")->required()->type_name("");
     addOutputFolder(*app, "--out", o->out, "folder for study.json, the pictures and later the answers")->required();
     o->engine.add(*app, "Engine", {"engine"});

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kWindow = "pellucid";
 
-struct Options {
+struct StudyRunArguments {
     std::string folder;
     std::optional<std::string> participant;
     SimulateOptions simulate;
@@ -48,7 +48,7 @@ void requireDisplay() {
                 "run it on a desktop");
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const StudyRunArguments& o, Progress& progress) {
     o.simulate.check();
     refuse({{o.simulate.isWanted() && o.participant, "simulated participants have ids of their own", "--participant",
              "leave it out"}});
@@ -78,7 +78,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addStudyRun(CLI::App& study) {
     CLI::App* app = study.add_subcommand("run", "Show a prepared study to a participant");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<StudyRunArguments>();
     app->add_option("DIR", o->folder, "the folder that a study was prepared into")->required()->type_name("");
     addValue(*app, "--participant", "ID", o->participant, parseParticipant,
              "who takes part, without a name; one who has begun goes on (default: a new one)");

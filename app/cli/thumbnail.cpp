@@ -25,7 +25,7 @@ constexpr int kLargestSize = 2048;
 /// In d0: a sixth of the time of the usual one, for pictures that no one can tell apart at this size (SSIM 0.9999).
 constexpr double kFinestStep = 0.5;
 
-struct Options {
+struct ThumbnailArguments {
     std::string in, out;
     int size = 256;
 };
@@ -40,7 +40,7 @@ int factorFor(const VolumeSource& source, int size, const JobControl& job) {
     return std::max(1, (std::max({dims.x, dims.y, dims.z}) + most - 1) / most);
 }
 
-SceneOptions sceneOf(const Options& o, const JobControl& job) {
+SceneOptions sceneOf(const ThumbnailArguments& o, const JobControl& job) {
     SceneOptions options;
     VolumeSource source;
     if (isSession(o.in)) {
@@ -54,7 +54,7 @@ SceneOptions sceneOf(const Options& o, const JobControl& job) {
     return options;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const ThumbnailArguments& o, Progress& progress) {
     const Stopwatch total;
     // The format is asked of a program of its own where it is not ours, so that this may take a moment, too.
     const SceneOptions options = sceneOf(o, progress.phase("reading the header"));
@@ -82,7 +82,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addThumbnail(CLI::App& program) {
     CLI::App* app = program.add_subcommand("thumbnail", "Writes a small picture of a file, for file managers");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ThumbnailArguments>();
     app->add_option_function<std::string>(
            "IN", [o](const std::string& text) { o->in = pathOfUrl(text); },
            "a volume that says itself what it is, or a session")

@@ -19,7 +19,7 @@ namespace {
 
 using Figure = ViewMetric::Figure;
 
-struct Options {
+struct ViewsArguments {
     SceneOptions scene;
     std::optional<TargetInput> targets;
     std::optional<std::string> feature;
@@ -30,7 +30,7 @@ struct Options {
 
 bool isTable(const std::string& path) { return path.ends_with(".csv"); }
 
-ViewMetric metricOf(const Options& o, const Scene& scene, std::vector<std::string>& notices) {
+ViewMetric metricOf(const ViewsArguments& o, const Scene& scene, std::vector<std::string>& notices) {
     ViewMetric metric;
     if (o.feature) {
         metric.figure = o.figure;
@@ -71,12 +71,12 @@ Image pictureOf(const ViewMap& map) {
     return image;
 }
 
-struct Seconds {
+struct ViewsSeconds {
     double saliency = 0, map = 0, best = 0, total = 0;
 };
 
 std::string textOf(const ViewMetric& metric, const std::string& feature, const BestView& b, const Geometry& geometry,
-                   const std::string& engine, const Seconds& seconds) {
+                   const std::string& engine, const ViewsSeconds& seconds) {
     const std::string head = metric.figure == Figure::Objective ? "distance F"
                              : metric.figure == Figure::Vws     ? "VWS of " + feature
                                                                 : "visibility of " + feature;
@@ -96,7 +96,7 @@ std::string textOf(const ViewMetric& metric, const std::string& feature, const B
 }
 
 Json jsonOf(const ViewMetric& metric, const std::string& feature, const BestView& b, const Volume& volume,
-            const std::string& engine, const Seconds& seconds) {
+            const std::string& engine, const ViewsSeconds& seconds) {
     Json json{{"command", "views"}, {"metric", name(metric.figure)}};
     if (metric.figure == Figure::Objective)
         json["target"] = metric.targets;
@@ -129,7 +129,7 @@ Json jsonOf(const ViewMetric& metric, const std::string& feature, const BestView
     return json;
 }
 
-Answer run(const Options& o, Progress& progress) {
+Answer run(const ViewsArguments& o, Progress& progress) {
     const Stopwatch total;
     if (!o.targets && !o.feature && !o.scene.sessionFile) throw isRequired("--target or --feature", "views");
     if (o.targets && o.feature)
@@ -141,7 +141,7 @@ Answer run(const Options& o, Progress& progress) {
     const MeasureInput input = measureInput(scene);
     Workspace workspace;
     ViewWorkspace views;
-    Seconds seconds;
+    ViewsSeconds seconds;
 
     Stopwatch watch;
     const ViewSearch search = views.search(input, metric, o.count, progress.phase("views"));
@@ -167,7 +167,7 @@ Answer run(const Options& o, Progress& progress) {
 
 Command addViews(CLI::App& program) {
     CLI::App* app = program.add_subcommand("views", "The best view: a figure over all directions, and its best");
-    const auto o = std::make_shared<Options>();
+    const auto o = std::make_shared<ViewsArguments>();
     o->scene.addForFigures(*app);
     addValue(*app, "--target", kTargetForms, o->targets, TargetInput::parse,
              "the distance F from these shares, as in optimize (default: the session's)");

@@ -162,4 +162,6 @@ std::string figureText(double value) {
     return size < 10 ? fixedText(value, 4) : shortText(value);
 }
 
+std::string fromTo(double before, double after) { return figureText(before) + " → " + figureText(after); }
+
 } // namespace pellucid

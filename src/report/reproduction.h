@@ -89,5 +89,7 @@ Reproduction reproductionFromJson(const nlohmann::json& document, const std::str
 
 /// "0.5293", "4.0e-05": a figure of the pages.
 std::string figureText(double value);
+/// "0.5293 → 0.6": what becomes of a figure.
+std::string fromTo(double before, double after);
 
 } // namespace pellucid

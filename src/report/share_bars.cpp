@@ -14,7 +14,7 @@ namespace {
 
 using Anchor = PlotText::Anchor;
 
-constexpr double kGap = 6;         ///< between texts and what they stand beside, pixels
+constexpr double kBarGap = 6;      ///< between texts and what they stand beside, pixels
 constexpr double kChart = 150;     ///< height of the bars of a share at the upper end of the scale
 constexpr double kWidestBar = 64;  ///< pixels
 constexpr double kWidestName = 10; ///< in font sizes
@@ -58,23 +58,26 @@ public:
                  PlotAxis scale)
         : m_bars(bars), m_page(page), m_scale(std::move(scale)), m_ticks(ticksOf(m_scale, 5)) {
         for (const Measured& chart : charts) m_title = std::max(m_title, m_page.widthOf(chart.title));
-        for (const double tick : m_ticks) m_axis = std::max(m_axis, m_page.widthOf(tickText(m_scale, tick)) + 2 * kGap);
-        m_slot = m_page.widthOf(fixedText(0, kDigits)) + kGap;
+        for (const double tick : m_ticks)
+            m_axis = std::max(m_axis, m_page.widthOf(tickText(m_scale, tick)) + 2 * kBarGap);
+        m_slot = m_page.widthOf(fixedText(0, kDigits)) + kBarGap;
         for (const ShareBar& bar : bars)
-            m_slot = std::max(m_slot, std::min(m_page.widthOf(bar.name), kWidestName * m_page.fontSize) + kGap);
+            m_slot = std::max(m_slot, std::min(m_page.widthOf(bar.name), kWidestName * m_page.fontSize) + kBarGap);
     }
-    double leastWidth() const { return m_axis + std::max(m_slot * static_cast<double>(m_bars.size()), m_title) + kGap; }
-    double height() const { return 2 * kGap + 4 * line() + kChart; }
+    double leastWidth() const {
+        return m_axis + std::max(m_slot * static_cast<double>(m_bars.size()), m_title) + kBarGap;
+    }
+    double height() const { return 2 * kBarGap + 4 * line() + kChart; }
     void setWidth(double width) {
         m_width = width;
-        m_slot = (width - m_axis - kGap) / static_cast<double>(std::max<std::size_t>(1, m_bars.size()));
+        m_slot = (width - m_axis - kBarGap) / static_cast<double>(std::max<std::size_t>(1, m_bars.size()));
     }
 
     void add(const Measured& chart, const Vec2& corner, PlotDrawing& to) const {
-        const double left = corner.x + m_axis, bottom = corner.y + kGap + 2.5 * line() + kChart;
+        const double left = corner.x + m_axis, bottom = corner.y + kBarGap + 2.5 * line() + kChart;
         const auto yOf = [&](double share) { return bottom - kChart * share / m_scale.hi; };
-        to.texts.push_back({{left, corner.y + kGap + m_page.fontSize},
-                            m_page.fitted(chart.title, m_width - m_axis - kGap),
+        to.texts.push_back({{left, corner.y + kBarGap + m_page.fontSize},
+                            m_page.fitted(chart.title, m_width - m_axis - kBarGap),
                             PlotInk::Text,
                             Anchor::Start,
                             m_page.fontSize,
@@ -82,8 +85,8 @@ public:
                             true});
         for (const double tick : m_ticks) {
             const double y = yOf(tick);
-            to.areas.push_back({{left, y - 0.5}, {corner.x + m_width - kGap, y + 0.5}, PlotInk::Grid, {}});
-            to.texts.push_back({{left - kGap, y + 0.35 * m_page.fontSize},
+            to.areas.push_back({{left, y - 0.5}, {corner.x + m_width - kBarGap, y + 0.5}, PlotInk::Grid, {}});
+            to.texts.push_back({{left - kBarGap, y + 0.35 * m_page.fontSize},
                                 tickText(m_scale, tick),
                                 PlotInk::Faint,
                                 Anchor::End,
@@ -98,7 +101,7 @@ private:
 
     void addBar(const Measured& chart, const ShareBar& bar, double middle, double bottom, PlotDrawing& to) const {
         to.texts.push_back({{middle, bottom + line()},
-                            m_page.fitted(bar.name, m_slot - kGap),
+                            m_page.fitted(bar.name, m_slot - kBarGap),
                             PlotInk::Text,
                             Anchor::Middle,
                             m_page.fontSize});

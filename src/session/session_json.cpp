@@ -431,7 +431,7 @@ json fromMeasure(const MeasureSettings& m) {
     return j;
 }
 
-MeasureSettings toMeasure(const JsonValue& j) {
+MeasureSettings toMeasureSettings(const JsonValue& j) {
     auto m = to<MeasureSettings>(j);
     takeSettings(j, m.saliency);
     takeSettings(j, m.vws);
@@ -675,7 +675,7 @@ RunStart toRunStart(const JsonValue& j, std::size_t features) {
     start.tf = toTf(j["tf"]);
     start.camera = cameraFromJson(j["camera"]);
     start.clipping = toClipping(j["clip"]);
-    start.measure = toMeasure(j["measure"]);
+    start.measure = toMeasureSettings(j["measure"]);
     start.options = to<OptimizeOptions>(j["optimize"]);
     for (const JsonValue& l : j["limits"].items()) {
         start.limits.push_back({l["lowest"].number(0, 1), l["highest"].number(0, 1), l["locked"].boolean()});
@@ -836,7 +836,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("clip")) s.clipping = toClipping(j["clip"]);
     if (j.has("display")) s.display = toDisplay(j["display"]);
     if (j.has("reference")) s.reference = toReference(j["reference"]);
-    if (j.has("measure")) s.measure = toMeasure(j["measure"]);
+    if (j.has("measure")) s.measure = toMeasureSettings(j["measure"]);
     if (j.has("optimize")) s.optimize = to<OptimizeOptions>(j["optimize"]);
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);

@@ -12,13 +12,13 @@ using pellucid::test::Workshop;
 namespace {
 
 const Words kScene{"sample:shells", "--sample-size", "12", "--tf", "tents:3", "--view", "30,20"};
-const Words kSmall = Words{"figure"} + kScene + Words{"--dpi", "50"};
+const Words kSmallFigure = Words{"figure"} + kScene + Words{"--dpi", "50"};
 
 } // namespace
 
 TEST_CASE("figure writes PDF and SVG with the shares that measure tells", "[cli][figure]") {
     const Workshop w;
-    const json figure = w.json(kSmall + Words{"--width-mm", "114", "--out", "a.pdf"});
+    const json figure = w.json(kSmallFigure + Words{"--width-mm", "114", "--out", "a.pdf"});
     CHECK(figure["command"] == "figure");
     CHECK(figure["page_mm"][0] == 114.0);
     CHECK(figure["pixels"] == json::array({224, 168})); // 114 · 50 / 25.4 = 224.4, and 3/4 of 114 mm: 168.3
@@ -30,17 +30,17 @@ TEST_CASE("figure writes PDF and SVG with the shares that measure tells", "[cli]
             INFO(what);
             CHECK(figure["features"][f][what] == measured["features"][f][what]);
         }
-    w.json(kSmall + Words{"--parts", "scale,legend,shares,colors,caption", "--out", "a.svg"});
-    w.json(kSmall + Words{"--parts", "scale,legend,shares,colors,caption", "--out", "b.svg"});
+    w.json(kSmallFigure + Words{"--parts", "scale,legend,shares,colors,caption", "--out", "a.svg"});
+    w.json(kSmallFigure + Words{"--parts", "scale,legend,shares,colors,caption", "--out", "b.svg"});
     CHECK(w.read("a.svg").find("<svg") != std::string::npos);
     CHECK(w.read("a.svg") == w.read("b.svg")); // by another process
-    w.json(kSmall + Words{"--width-mm", "114", "--out", "b.pdf"});
+    w.json(kSmallFigure + Words{"--width-mm", "114", "--out", "b.pdf"});
     CHECK(w.read("a.pdf") == w.read("b.pdf"));
 }
 
 TEST_CASE("figure has all parts where all are asked for, and says which font stands in", "[cli][figure]") {
     const Workshop w;
-    const json all = w.json(kSmall + Words{"--parts", "all", "--out", "a.svg"});
+    const json all = w.json(kSmallFigure + Words{"--parts", "all", "--out", "a.svg"});
     CHECK_FALSE(all["caption"].get<std::string>().empty());
     CHECK(all.contains("scale"));
     for (const char* part : {"heading", "picture", "annotations", "feature-1", "shares-axis", "colors", "caption"}) {
@@ -48,14 +48,15 @@ TEST_CASE("figure has all parts where all are asked for, and says which font sta
         CHECK(w.read("a.svg").find("<g id=\"" + std::string(part) + "\"") != std::string::npos);
     }
     const auto noteOf = [&](const std::string& font) {
-        const Outcome outcome = w.run(kSmall + Words{"--parts", "legend", "--font", font, "--out", "b.svg"});
+        const Outcome outcome = w.run(kSmallFigure + Words{"--parts", "legend", "--font", font, "--out", "b.svg"});
         INFO(outcome.err);
         CHECK(outcome.status == 0);
         return outcome.err;
     };
     CHECK(noteOf("NoSuchFontXYZ").find("the font NoSuchFontXYZ is not installed: ") != std::string::npos);
     CHECK(noteOf("NoSuchFontXYZ, sans").empty()); // any font is a sans
-    const json noted = w.jsonAndNotes(kSmall + Words{"--parts", "legend", "--font", "NoSuchFontXYZ", "--out", "b.svg"});
+    const json noted =
+        w.jsonAndNotes(kSmallFigure + Words{"--parts", "legend", "--font", "NoSuchFontXYZ", "--out", "b.svg"});
     REQUIRE(noted["notices"].size() == 1);
     // What stands in is there, so that it can be asked for without a note.
     const std::string notice = noted["notices"][0], before = "installed: ";
@@ -82,9 +83,9 @@ TEST_CASE("figures that cannot be made are refused in words", "[cli][figure]") {
 TEST_CASE("figure says that too little memory is left for fonts", "[cli][figure]") {
     const Workshop w;
     const Outcome refused =
-        w.run(kSmall + Words{"--memory", "0.09", "--out", "a.pdf"}); // 97 MB, of which 101 are needed
+        w.run(kSmallFigure + Words{"--memory", "0.09", "--out", "a.pdf"}); // 97 MB, of which 101 are needed
     CHECK(refused.status == 1);
     CHECK(refused.err.find("setting the letters of a figure needs 101 MB of memory") != std::string::npos);
     CHECK_FALSE(w.has("a.pdf"));
-    CHECK(w.run(kSmall + Words{"--memory", "1", "--out", "a.pdf"}).status == 0);
+    CHECK(w.run(kSmallFigure + Words{"--memory", "1", "--out", "a.pdf"}).status == 0);
 }

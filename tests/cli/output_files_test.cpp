@@ -46,7 +46,7 @@ void checkRefused(const Workshop& w, const Words& command, const std::string& me
     CHECK(contentsOf(w) == before);
 }
 
-const Words kShells{"sample:shells", "--sample-size", "16", "--tf", "tents:3"};
+const Words kShellsToRender{"sample:shells", "--sample-size", "16", "--tf", "tents:3"};
 const Words kTarget{"--target", "1,1,1"};
 
 } // namespace
@@ -60,7 +60,7 @@ TEST_CASE("no output replaces the file of a variable, of the ground or of a came
     w.write("detached.nhdr", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n"
                              "data file: data.raw\n\n");
     w.write("ground.raw", std::string(16, '\1'));
-    const Words optimize = Words{"optimize"} + kShells + kTarget;
+    const Words optimize = Words{"optimize"} + kShellsToRender + kTarget;
 
     checkRefused(w, optimize + Words{"--variable", "y=y.nrrd", "--out-tf", "y.nrrd"}, kOverwrites + "y.nrrd, ");
     checkRefused(w, optimize + Words{"--variable", "y=y.nrrd", "--out-camera", "./y.nrrd"},
@@ -70,23 +70,24 @@ TEST_CASE("no output replaces the file of a variable, of the ground or of a came
         checkRefused(w, optimize + Words{"--variable", std::string("y=") + header, "--out-tf", "data.raw"},
                      kOverwrites + "data.raw");
         checkRefused(w,
-                     Words{"space"} + kShells + kTarget +
+                     Words{"space"} + kShellsToRender + kTarget +
                          Words{"--variable", std::string("y=") + header, "--save", "data.raw"},
                      kOverwrites + "data.raw");
         checkRefused(w, Words{"refine", header, "--out-tf", header}, kOverwrites + header);
     }
     checkRefused(w, Words{"space", "y.nrrd", "--tf", "tents:3", "--save", "y.nrrd"} + kTarget, kOverwrites + "y.nrrd");
     w.write("ground.png", std::string(16, '\1'));
-    checkRefused(
-        w, Words{"render"} + kShells + Words{"--ground", "ground.png", "--ground-raw", "4,4,u8", "--out", "ground.png"},
-        kOverwrites + "ground.png");
+    checkRefused(w,
+                 Words{"render"} + kShellsToRender +
+                     Words{"--ground", "ground.png", "--ground-raw", "4,4,u8", "--out", "ground.png"},
+                 kOverwrites + "ground.png");
     fs::create_directory(w.path("fields"));
     fs::rename(w.path("y.nrrd"), w.path("fields/vws.nrrd"));
-    checkRefused(w, Words{"fields"} + kShells + Words{"--variable", "y=fields/vws.nrrd", "--out", "fields"},
+    checkRefused(w, Words{"fields"} + kShellsToRender + Words{"--variable", "y=fields/vws.nrrd", "--out", "fields"},
                  kOverwrites + "fields/vws.nrrd");
     fs::rename(w.path("fields/vws.nrrd"), w.path("fields/vws_f2.nrrd")); // known only when features are
     checkRefused(w,
-                 Words{"fields"} + kShells +
+                 Words{"fields"} + kShellsToRender +
                      Words{"--variable", "y=fields/vws_f2.nrrd", "--feature", "f2", "--out", "fields"},
                  kOverwrites + "fields/vws_f2.nrrd");
 }
@@ -120,7 +121,7 @@ TEST_CASE("two outputs are two files", "[cli][output-files]") {
     const Workshop w;
     fs::create_directory(w.path("r"));
     fs::create_symlink("a.json", w.path("link.json")); // leads nowhere yet
-    const Words optimize = Words{"optimize"} + kShells + kTarget;
+    const Words optimize = Words{"optimize"} + kShellsToRender + kTarget;
     checkRefused(w, optimize + Words{"--out-tf", "a.json", "--out-camera", "a.json"},
                  kSame + "--out-tf a.json and --out-camera a.json, choose another name for one\n");
     checkRefused(w, optimize + Words{"--out-tf", "a.json", "--out-camera", "r/../a.json"}, kSame);
@@ -128,9 +129,10 @@ TEST_CASE("two outputs are two files", "[cli][output-files]") {
                  kSame + "--out-tf link.json and --out-camera a.json, ");
     checkRefused(w, optimize + Words{"--report", "r", "--curves", "r/curves.csv"},
                  kSame + "--curves r/curves.csv and --report r/curves.csv, ");
-    const Words space = Words{"space"} + kShells + kTarget;
+    const Words space = Words{"space"} + kShellsToRender + kTarget;
     checkRefused(w, space + Words{"--csv", "s.nrrd", "--save", "s.nrrd"}, kSame);
-    checkRefused(w, Words{"views"} + kShells + Words{"--feature", "f1", "--out-camera", "v.csv", "--map", "v.csv"},
+    checkRefused(w,
+                 Words{"views"} + kShellsToRender + Words{"--feature", "f1", "--out-camera", "v.csv", "--map", "v.csv"},
                  kSame);
     w.write("old.json", "older");
     fs::create_hard_link(w.path("old.json"), w.path("hard.json"));

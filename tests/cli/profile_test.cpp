@@ -16,14 +16,14 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const Words kSmall{"sample:disks", "--sample-size", "16", "--tf", "tents:3:0.3"};
+const Words kSmallDisks{"sample:disks", "--sample-size", "16", "--tf", "tents:3:0.3"};
 const Words kPublished{"--profile", "published"};
 
 } // namespace
 
 TEST_CASE("measure, fields and optimize know the published profile", "[cli][published]") {
     const Workshop w;
-    const json told = w.json(Words{"measure"} + kSmall + kPublished + Words{"--along", "left"});
+    const json told = w.json(Words{"measure"} + kSmallDisks + kPublished + Words{"--along", "left"});
     CHECK(told["engine"] == "published");
     CHECK(told["profile"] == "published");
     CHECK(told["along"] == "left");
@@ -40,23 +40,23 @@ TEST_CASE("measure, fields and optimize know the published profile", "[cli][publ
     const Measures expected = Workspace().measure(measureInput(openScene(inputs)));
     for (std::size_t f = 0; f < 3; ++f) CHECK(told["features"][f]["vws"] == expected.features[f].vws);
 
-    const json found = w.json(Words{"optimize"} + kSmall + kPublished +
+    const json found = w.json(Words{"optimize"} + kSmallDisks + kPublished +
                               Words{"--along", "left", "--target", "1,1,1", "--method", "newton"});
     CHECK(found["along"] == "left");
     CHECK(found["vws"][0][0] == told["features"][0]["vws"]);
     const std::size_t best = found["best"];
     CHECK(found["objective"][best].get<double>() < 0.8 * found["objective"][0].get<double>());
 
-    const json fields = w.json(Words{"fields"} + kSmall + kPublished + Words{"--out", "f"});
+    const json fields = w.json(Words{"fields"} + kSmallDisks + kPublished + Words{"--out", "f"});
     CHECK(fields["along"] == "front"); // where nothing else is said
     CHECK(w.has("f/vws.nrrd"));
-    CHECK_FALSE(w.json(Words{"measure", "--view", "30,20"} + kSmall).contains("profile"));
+    CHECK_FALSE(w.json(Words{"measure", "--view", "30,20"} + kSmallDisks).contains("profile"));
 }
 
 TEST_CASE("the published profile takes no option that it fixes", "[cli][published]") {
     const Workshop w;
     const auto refused = [&](const Words& options, const std::string& message) {
-        const Outcome outcome = w.run(Words{"measure"} + kSmall + options);
+        const Outcome outcome = w.run(Words{"measure"} + kSmallDisks + options);
         CHECK(outcome.status == 2);
         CHECK_THAT(outcome.err, Catch::Contains(message));
     };
@@ -67,7 +67,7 @@ TEST_CASE("the published profile takes no option that it fixes", "[cli][publishe
     refused({"--profile", "thesis"}, "--profile");
     refused(kPublished + Words{"--along", "north"}, "--along");
     // A camera is of no use, and of no harm.
-    const Outcome outcome = w.run(Words{"measure", "--view", "30,20"} + kSmall + kPublished);
+    const Outcome outcome = w.run(Words{"measure", "--view", "30,20"} + kSmallDisks + kPublished);
     CHECK(outcome.status == 0);
     CHECK_THAT(outcome.err, Catch::Contains("view \"front\" of the published profile"));
     CHECK_THAT(outcome.out, Catch::Contains("engine published (published profile, front)"));

@@ -17,7 +17,7 @@ using test::Workshop;
 
 namespace {
 
-const Words kShells{"sample:shells", "--sample-size", "24", "--tf", "tents:3:0.1", "--engine", "cpu"};
+const Words kShellsOpened{"sample:shells", "--sample-size", "24", "--tf", "tents:3:0.1", "--engine", "cpu"};
 
 std::vector<double> sharesIn(const json& answer) {
     std::vector<double> shares;
@@ -29,7 +29,7 @@ std::vector<double> sharesIn(const json& answer) {
 
 TEST_CASE("measure tells the 2D feature saliency of the picture that render draws", "[cli][picture]") {
     const Workshop w;
-    const json answer = w.json(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72"});
+    const json answer = w.json(Words{"measure"} + kShellsOpened + Words{"--2dfs", "--size", "96x72"});
     const std::vector<double> shares = sharesIn(answer);
     REQUIRE(shares.size() == 3);
     CHECK(shares[0] + shares[1] + shares[2] == Approx(1).margin(1e-9));
@@ -40,20 +40,23 @@ TEST_CASE("measure tells the 2D feature saliency of the picture that render draw
     SECTION("light, background and size matter, figures of the volume do not change") {
         for (const Words& more : {Words{"--shading"}, Words{"--background", "1,1,1"}, Words{"--mode", "mip"}}) {
             INFO(more[0]);
-            const json other = w.json(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72"} + more);
+            const json other = w.json(Words{"measure"} + kShellsOpened + Words{"--2dfs", "--size", "96x72"} + more);
             CHECK(sharesIn(other) != shares);
             CHECK(other["features"][0]["vws"] == answer["features"][0]["vws"]);
             CHECK(other["picture"]["lit"] == (more[0] == "--shading"));
         }
     }
     SECTION("a hidden feature has none, and one that is drawn alone has all") {
-        const json hidden = w.json(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72", "--hide", "f2"});
+        const json hidden =
+            w.json(Words{"measure"} + kShellsOpened + Words{"--2dfs", "--size", "96x72", "--hide", "f2"});
         CHECK(sharesIn(hidden)[1] == 0);
-        const json alone = w.json(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72", "--feature", "f2"});
+        const json alone =
+            w.json(Words{"measure"} + kShellsOpened + Words{"--2dfs", "--size", "96x72", "--feature", "f2"});
         CHECK(sharesIn(alone) == std::vector<double>{0, 1, 0});
     }
     SECTION("pictures and maps are written, and add up") {
-        const json written = w.json(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72", "--maps", "m"});
+        const json written =
+            w.json(Words{"measure"} + kShellsOpened + Words{"--2dfs", "--size", "96x72", "--maps", "m"});
         CHECK(written["picture"]["files"].size() == 3 + 3 * 5);
         const auto sum = [&](const std::string& name) {
             const Image image = readImage(w.path("m/" + name + ".exr").string());
@@ -69,10 +72,10 @@ TEST_CASE("measure tells the 2D feature saliency of the picture that render draw
               Approx(sum("rest") + sum("feature1_shared") + sum("feature2_shared") + sum("feature3_shared"))
                   .margin(1e-3));
         CHECK(readImage(w.path("m/feature3.png").string()).height == 72);
-        CHECK(w.run(Words{"measure"} + kShells + Words{"--maps", "n"}).status == 2);
+        CHECK(w.run(Words{"measure"} + kShellsOpened + Words{"--maps", "n"}).status == 2);
     }
     SECTION("the table has a column and says what picture it is of") {
-        const Outcome text = w.run(Words{"measure"} + kShells + Words{"--2dfs", "--size", "96x72", "--shading"});
+        const Outcome text = w.run(Words{"measure"} + kShellsOpened + Words{"--2dfs", "--size", "96x72", "--shading"});
         CHECK(text.out.find("2DFS\n") != std::string::npos);
         CHECK(text.out.find("2DFS of 96 x 72 pixels, lit, drawn by cpu\n") != std::string::npos);
     }
@@ -81,7 +84,7 @@ TEST_CASE("measure tells the 2D feature saliency of the picture that render draw
 TEST_CASE("options of a picture are refused where no picture is looked at", "[cli][picture]") {
     const Workshop w;
     for (const Words& more : {Words{"--size", "96x72"}, Words{"--shading"}, Words{"--background", "1,1,1"}}) {
-        const Outcome outcome = w.run(Words{"measure"} + kShells + more);
+        const Outcome outcome = w.run(Words{"measure"} + kShellsOpened + more);
         CHECK(outcome.status == 2);
         CHECK(outcome.err == "pellucid-cli: error: no picture is looked at, " + more[0] +
                                  ", add --2dfs or --shares, or leave it out\n");

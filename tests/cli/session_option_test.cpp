@@ -56,7 +56,7 @@ struct Saved {
     }
 };
 
-json measured(const Workshop& w, std::vector<std::string> options) {
+json measuredBy(const Workshop& w, std::vector<std::string> options) {
     options.insert(options.begin(), {"measure", "--session", "a.pellucid.json"});
     return w.json(options);
 }
@@ -71,7 +71,7 @@ std::vector<double> column(const json& objects, const char* key) {
 
 TEST_CASE("a session measures as the window does", "[cli][session]") {
     const Saved saved;
-    const json j = measured(saved.w, {});
+    const json j = measuredBy(saved.w, {});
     const Scene scene = saved.scene();
     const Measures expected = Workspace().measure(measureInput(scene));
     REQUIRE(j["features"].size() == expected.features.size());
@@ -108,7 +108,7 @@ TEST_CASE("a session optimizes towards its own targets, in its own way", "[cli][
 TEST_CASE("options override what the session says", "[cli][session]") {
     const Saved saved;
     const Workshop& w = saved.w;
-    const json plain = measured(w, {});
+    const json plain = measuredBy(w, {});
     const std::vector<std::vector<std::string>> changes{{"--tf", "tents:2"},
                                                         {"--range", "-400,1200"},
                                                         {"--view", "0,0"},
@@ -120,21 +120,21 @@ TEST_CASE("options override what the session says", "[cli][session]") {
                                                         {"--quality", "high"}};
     for (const auto& change : changes) {
         INFO(change[0]);
-        CHECK(column(measured(w, change)["features"], "vws") != column(plain["features"], "vws"));
+        CHECK(column(measuredBy(w, change)["features"], "vws") != column(plain["features"], "vws"));
     }
-    CHECK(measured(w, {"--engine", "reference"})["engine"] == "reference");
-    CHECK(measured(w, {"--range", "-400,1200"})["volume"]["range"] == json({-400.0, 1200.0}));
+    CHECK(measuredBy(w, {"--engine", "reference"})["engine"] == "reference");
+    CHECK(measuredBy(w, {"--range", "-400,1200"})["volume"]["range"] == json({-400.0, 1200.0}));
     // The curve stays at its data values: tents:3 of −600 … 1200 has its middle one from 60.
     const auto dataValue = [](const json& j) {
         const double lo = j["volume"]["range"][0], hi = j["volume"]["range"][1];
         return lo + j["features"][1]["range"][0].get<double>() * (hi - lo);
     };
     CHECK(dataValue(plain) == Approx(-600 + 1800 * (0.5 - 0.4 / 3)));
-    CHECK(dataValue(measured(w, {"--range", "-400,1200"})) == Approx(dataValue(plain)));
+    CHECK(dataValue(measuredBy(w, {"--range", "-400,1200"})) == Approx(dataValue(plain)));
 
     // VOLUME takes the place of the session's data, and of nothing else.
     REQUIRE(w.run({"generate", "knee", "--size", "16", "--out", "small.nrrd"}).status == 0);
-    const json small = measured(w, {"small.nrrd"});
+    const json small = measuredBy(w, {"small.nrrd"});
     CHECK(small["volume"]["dims"][0] == 16);
     CHECK(small["volume"]["range"] == json({-500.0, 1500.0}));
     CHECK(small["features"][1]["name"] == "middle");

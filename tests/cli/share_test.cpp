@@ -11,14 +11,14 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const Words kSmall{"share", "sample:shells", "--sample-size", "16", "--tf", "tents:3"};
+const Words kSmallShare{"share", "sample:shells", "--sample-size", "16", "--tf", "tents:3"};
 
 } // namespace
 
 TEST_CASE("share writes a page, and says that the voxels are in it", "[cli][share]") {
     const Workshop w;
     const Outcome outcome =
-        w.run(kSmall + Words{"--view", "30,20", "--title", "A & B", "--out", "page.html", "--json"});
+        w.run(kSmallShare + Words{"--view", "30,20", "--title", "A & B", "--out", "page.html", "--json"});
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
     CHECK(outcome.err.find("note: the page holds the voxels themselves") != std::string::npos);
@@ -31,8 +31,8 @@ TEST_CASE("share writes a page, and says that the voxels are in it", "[cli][shar
     CHECK(share["density"] == true);
     CHECK(w.read("page.html").find("<h1>A &#38; B</h1>") != std::string::npos);
 
-    const json coarse =
-        w.jsonAndNotes(kSmall + Words{"--voxels", "1000", "--bits", "8", "--density-slider", "off", "--out", "c.html"});
+    const json coarse = w.jsonAndNotes(
+        kSmallShare + Words{"--voxels", "1000", "--bits", "8", "--density-slider", "off", "--out", "c.html"});
     CHECK(coarse["dims"] == json({8, 8, 8}));
     CHECK(coarse["full_dims"] == json({16, 16, 16}));
     CHECK(coarse["factor"] == 2);
@@ -44,7 +44,7 @@ TEST_CASE("share writes a page, and says that the voxels are in it", "[cli][shar
 TEST_CASE("pages that cannot be written are refused in words", "[cli][share]") {
     const Workshop w;
     const auto refused = [&](const Words& options, int status, const std::string& word) {
-        const Outcome outcome = w.run(kSmall + options);
+        const Outcome outcome = w.run(kSmallShare + options);
         INFO(outcome.err);
         CHECK(outcome.status == status);
         CHECK(outcome.out.empty());

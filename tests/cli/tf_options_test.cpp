@@ -13,22 +13,22 @@ using pellucid::test::operator+;
 
 namespace {
 
-const Words kMeasure{"measure", "sample:shells", "--size", "20", "--tf", "tents:3:0.1", "--engine", "cpu"};
-const Words kRefine{"refine", "sample:shells", "--size", "20", "--tf", "tents:3:0.1", "--max-iterations", "0"};
+const Words kMeasureRamp{"measure", "sample:shells", "--size", "20", "--tf", "tents:3:0.1", "--engine", "cpu"};
+const Words kRefineRamp{"refine", "sample:shells", "--size", "20", "--tf", "tents:3:0.1", "--max-iterations", "0"};
 
 } // namespace
 
 TEST_CASE("hidden features are not measured, and named ones alone are", "[cli][tf]") {
     const Workshop w;
-    const json all = w.json(kMeasure), hidden = w.json(kMeasure + Words{"--hide", "f2"});
+    const json all = w.json(kMeasureRamp), hidden = w.json(kMeasureRamp + Words{"--hide", "f2"});
     CHECK(all["features"][1]["visibility"].get<double>() > 0.05);
     CHECK(hidden["features"][1]["visibility"] == 0.0);
     CHECK(hidden["features"][1]["name"] == "f2");
     CHECK(hidden["features"][0]["visibility"].get<double>() + hidden["features"][2]["visibility"].get<double>() ==
           Approx(1));
-    const json only = w.json(kMeasure + Words{"--only", "f1", "--only", "f3"});
+    const json only = w.json(kMeasureRamp + Words{"--only", "f1", "--only", "f3"});
     CHECK(only["features"] == hidden["features"]);
-    CHECK(w.json(kMeasure + Words{"--only", "f2"})["features"][1]["visibility"] == Approx(1));
+    CHECK(w.json(kMeasureRamp + Words{"--only", "f2"})["features"][1]["visibility"] == Approx(1));
 }
 
 TEST_CASE("pictures show what is not hidden", "[cli][tf]") {
@@ -46,10 +46,10 @@ TEST_CASE("pictures show what is not hidden", "[cli][tf]") {
 
 TEST_CASE("density and colour maps change the transfer function that comes out", "[cli][tf]") {
     const Workshop w;
-    const json plain = w.json(kRefine)["tf"], dense = w.json(kRefine + Words{"--density", "2"})["tf"];
+    const json plain = w.json(kRefineRamp)["tf"], dense = w.json(kRefineRamp + Words{"--density", "2"})["tf"];
     // 1 − 0.9² = 0.19 at each peak.
     for (const std::size_t peak : {1u, 4u, 7u}) CHECK(dense["points"][peak]["opacity"].get<double>() == Approx(0.19));
-    const json colored = w.json(kRefine + Words{"--colormap", "categorical"})["tf"];
+    const json colored = w.json(kRefineRamp + Words{"--colormap", "categorical"})["tf"];
     REQUIRE(colored["points"].size() == plain["points"].size());
     for (std::size_t i = 0; i < plain["points"].size(); ++i) {
         CHECK(colored["points"][i]["opacity"] == plain["points"][i]["opacity"]);
@@ -57,8 +57,8 @@ TEST_CASE("density and colour maps change the transfer function that comes out",
         CHECK(colored["points"][i]["color"] != plain["points"][i]["color"]);
     }
     // Reversed over features, the first of grey has what the last had.
-    const json grey = w.json(kRefine + Words{"--colormap", "grey,features"})["tf"],
-               reversed = w.json(kRefine + Words{"--colormap", "grey,reverse,features"})["tf"];
+    const json grey = w.json(kRefineRamp + Words{"--colormap", "grey,features"})["tf"],
+               reversed = w.json(kRefineRamp + Words{"--colormap", "grey,reverse,features"})["tf"];
     CHECK(grey["features"][0]["color"] == reversed["features"][2]["color"]);
     CHECK(grey["features"][1]["color"] == reversed["features"][1]["color"]);
 }
@@ -81,7 +81,7 @@ TEST_CASE("a search leaves a hidden feature its opacity and aims it at nothing",
 TEST_CASE("names that are not there are said, with those that are", "[cli][tf]") {
     const Workshop w;
     const auto fails = [&](const Words& words, const std::string& part, const std::string& known) {
-        const Outcome o = w.run(kMeasure + words);
+        const Outcome o = w.run(kMeasureRamp + words);
         CHECK(o.status == 2);
         CHECK(o.out.empty());
         CHECK_THAT(o.err, Catch::Contains(part) && Catch::Contains(known));

@@ -30,11 +30,11 @@ int drawnPixels(const pellucid::Image& image) {
 TEST_CASE("a thumbnail shows a volume, made coarser, in a file of any name", "[cli][thumbnail]") {
     const Workshop w;
     REQUIRE(w.run({"generate", "shells", "--size", "200", "--out", "shells.nrrd"}).status == 0);
-    const auto json = w.json({"thumbnail", "shells.nrrd", "small", "--size", "128"});
-    CHECK(json["command"] == "thumbnail");
-    CHECK(json["size"] == nlohmann::json::array({128, 128}));
-    CHECK(json["downsample"] == 3);                                       // ⌈200 / 96⌉
-    CHECK(json["volume"]["dims"] == nlohmann::json::array({67, 67, 67})); // ⌈200 / 3⌉
+    const auto answer = w.json({"thumbnail", "shells.nrrd", "small", "--size", "128"});
+    CHECK(answer["command"] == "thumbnail");
+    CHECK(answer["size"] == nlohmann::json::array({128, 128}));
+    CHECK(answer["downsample"] == 3);                                       // ⌈200 / 96⌉
+    CHECK(answer["volume"]["dims"] == nlohmann::json::array({67, 67, 67})); // ⌈200 / 3⌉
     CHECK(w.read("small").substr(0, 4) == "\x89PNG");
     std::filesystem::rename(w.path("small"), w.path("small.png").string());
     const pellucid::Image image = pellucid::readImage(w.path("small.png").string());

@@ -23,13 +23,13 @@ const Words kRain{"--variable", "y=sample:hurricane/precipitation"};
 TEST_CASE("render draws by the variables that it is told", "[cli][variables]") {
     const Workshop w;
     const Words render = Words{"render"} + kData + Words{"--size", "40x30", "--out", "a.png"};
-    const auto json = w.json(render + kRain + Words{"--hsb", "saturation=volatility:x:5,brightness=y,hue=120,b=2.5"});
-    CHECK(json["hsb"]["alpha"] == "x");
-    CHECK(json["hsb"]["saturation"] == "volatility:x:5");
-    CHECK(json["hsb"]["brightness"] == "y");
-    CHECK(json["hsb"]["hue"] == 120);
-    CHECK(json["hsb"]["a"].get<double>() > 1); // by the data: deviations are below ½
-    CHECK(json["hsb"]["b"] == 2.5);
+    const auto answer = w.json(render + kRain + Words{"--hsb", "saturation=volatility:x:5,brightness=y,hue=120,b=2.5"});
+    CHECK(answer["hsb"]["alpha"] == "x");
+    CHECK(answer["hsb"]["saturation"] == "volatility:x:5");
+    CHECK(answer["hsb"]["brightness"] == "y");
+    CHECK(answer["hsb"]["hue"] == 120);
+    CHECK(answer["hsb"]["a"].get<double>() > 1); // by the data: deviations are below ½
+    CHECK(answer["hsb"]["b"] == 2.5);
     // Green or grey on black, never more red or blue than green.
     const Image image = readImage(w.path("a.png").string());
     double most = 0, strongest = 0;
@@ -68,12 +68,12 @@ TEST_CASE("measures are of the colours that are drawn", "[cli][variables]") {
 
 TEST_CASE("a region is refined by the colours that are drawn", "[cli][variables]") {
     const Workshop w;
-    const auto json =
+    const auto answer =
         w.json(Words{"refine"} + Words{"sample:hurricane", "--sample-size", "32", "--frame", "12"} + kRain +
                Words{"--hsb", "saturation=volatility:x:5,brightness=y", "--region", "20,20,60,60", "--size", "80x80",
                      "--tf", "tents:3:0.5"});
-    CHECK(json["hsb"]["brightness"] == "y");
-    CHECK(json["priority"]["kind"] == "region");
+    CHECK(answer["hsb"]["brightness"] == "y");
+    CHECK(answer["priority"]["kind"] == "region");
 }
 
 namespace {
@@ -220,8 +220,8 @@ TEST_CASE("variables that cannot be are told with their option", "[cli][variable
 
 TEST_CASE("samples over time are written frame by frame", "[cli][generate]") {
     const Workshop w;
-    const auto json = w.json({"generate", "vortex", "--size", "16", "--frames", "3", "--out", "v%02d.nrrd"});
-    CHECK(json["files"].size() == 3);
+    const auto answer = w.json({"generate", "vortex", "--size", "16", "--frames", "3", "--out", "v%02d.nrrd"});
+    CHECK(answer["files"].size() == 3);
     CHECK(w.list() == std::vector<std::string>{"v00.nrrd", "v01.nrrd", "v02.nrrd"});
     CHECK_FALSE(w.read("v00.nrrd") == w.read("v01.nrrd"));
     CHECK(w.json({"info", "v%02d.nrrd"}).dump().find("v02") != std::string::npos);

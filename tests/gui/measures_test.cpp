@@ -39,7 +39,7 @@ void moveTo(QWidget& widget, const QPointF& at) {
 
 QPointF middle(QWidget& widget) { return QRectF(widget.rect()).center(); }
 
-PictureView pictureOf(OpenWindow& w) { return {w.services().scene().camera, w.view().width(), w.view().height()}; }
+PictureView pictureIn(OpenWindow& w) { return {w.services().scene().camera, w.view().width(), w.view().height()}; }
 
 void trigger(OpenWindow& w, const char* action) { w.child<QAction>(action).trigger(); }
 
@@ -198,7 +198,7 @@ TEST_CASE("the mouse drags ends, rims and faces, each drag one step", "[measures
     CHECK(allOf(w)[0].radius == Approx(3 * g.spacing.x));
 
     // In the picture: the centre stays at its depth.
-    const PictureView picture = pictureOf(w);
+    const PictureView picture = pictureIn(w);
     const auto at = pixelOf(picture, allOf(w)[0].points[0]);
     const double depth = glm::dot(allOf(w)[0].points[0] - picture.camera.eye, picture.camera.forward());
     drag(w.view(), {at->x, at->y}, {at->x + 20, at->y});

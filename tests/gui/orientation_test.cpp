@@ -25,7 +25,7 @@ namespace {
 
 const Geometry& geometryOf(OpenWindow& w) { return w.services().scene().volume->geometry(); }
 
-void trigger(OpenWindow& w, const char* action) {
+void choose(OpenWindow& w, const char* action) {
     w.child<QAction>(action).trigger();
     w.settle();
 }
@@ -59,7 +59,7 @@ TEST_CASE("quarter turns go the way the picture shows, and undo", "[gui][orienta
                  {"mirrorAction", left, {1, 0, 0}}};
     for (const auto& turn : turns) {
         INFO(turn.action);
-        trigger(w, turn.action);
+        choose(w, turn.action);
         const Vec3 now = seen(w, turn.what);
         for (int axis = 0; axis < 3; ++axis) CHECK(now[axis] == Approx(turn.goes[axis]).margin(1e-9));
         CHECK(largestDifference(before, w.picture()) > 30);
@@ -73,9 +73,9 @@ TEST_CASE("quarter turns go the way the picture shows, and undo", "[gui][orienta
 TEST_CASE("a note stays as long as the data do not lie as the file says", "[gui][orientation]") {
     OpenWindow w;
     const auto& note = w.child<QLabel>("noticeText");
-    trigger(w, "turnLeftAction");
+    choose(w, "turnLeftAction");
     CHECK(note.text().contains("Turned: the data do not lie as the file says."));
-    trigger(w, "mirrorAction");
+    choose(w, "mirrorAction");
     CHECK(note.text().contains("Mirrored: left and right are not as in the file."));
     CHECK_FALSE(note.text().contains("Turned"));
     CHECK(annotationInput(pictureInput(w.services().scene(), 64, 48), {}).title == "shells, mirrored");
@@ -94,7 +94,7 @@ TEST_CASE("a patient is not mirrored without a question", "[gui][orientation]") 
         QTimer::singleShot(0, &w.window, [&w, with] {
             for (auto* box : w.window.findChildren<QMessageBox*>()) box->button(with)->click();
         });
-        trigger(w, "mirrorAction");
+        choose(w, "mirrorAction");
     };
     answer(QMessageBox::Cancel);
     CHECK(axesText(geometryOf(w)) == "R→L, A→P, I→S");
@@ -108,7 +108,7 @@ TEST_CASE("measures go along with data that are turned", "[gui][orientation]") {
     editPart(w.services().store(), &Session::rulers, "Measure", {}, [&](std::vector<Ruler>& rulers) {
         addRuler(rulers, {.points = {geometryOf(w).worldFromVoxel(a), geometryOf(w).worldFromVoxel(b)}});
     });
-    trigger(w, "tipForwardAction");
+    choose(w, "tipForwardAction");
     const Ruler& ruler = w.services().scene().session.rulers->front();
     const Vec3 first = geometryOf(w).voxelFromWorld(ruler.points[0]);
     for (int axis = 0; axis < 3; ++axis) CHECK(first[axis] == Approx(a[axis]));
@@ -139,12 +139,12 @@ TEST_CASE("who names the axes of a patient gets the words of anatomy, and the fi
         looked = true;
         dialog->accept();
     });
-    trigger(w, "sayAxesAction");
+    choose(w, "sayAxesAction");
     REQUIRE(looked);
     CHECK(axesText(geometryOf(w)) == "R→L, I→S, P→A");
     CHECK(w.child<QAction>("view1").text() == "Anterior");
     CHECK(ofFile.isEnabled());
-    trigger(w, "axesOfFileAction");
+    choose(w, "axesOfFileAction");
     CHECK(axesText(geometryOf(w)) == "+x, +y, +z");
     CHECK_FALSE(ofFile.isEnabled());
 }
@@ -174,7 +174,7 @@ TEST_CASE("who says how far voxels are apart gets a volume, measures and a scale
         looked = true;
         dialog->accept();
     });
-    trigger(w, "spacingAction");
+    choose(w, "spacingAction");
     REQUIRE(looked);
     const Geometry after = geometryOf(w);
     CHECK(after.spacing.x == Approx(before.spacing.x));
@@ -187,19 +187,19 @@ TEST_CASE("who says how far voxels are apart gets a volume, measures and a scale
     };
     CHECK(distance(w.services().scene().camera, after) == Approx(distance(camera, before)).epsilon(0.01));
     CHECK(ofFile.isEnabled());
-    trigger(w, "undoAction");
+    choose(w, "undoAction");
     CHECK(geometryOf(w).spacing == before.spacing);
     CHECK(distance(w.services().scene().camera, before) == Approx(distance(camera, before)).epsilon(0.01));
-    trigger(w, "redoAction");
+    choose(w, "redoAction");
     CHECK(geometryOf(w).spacing == after.spacing);
     // What is opened anew is seen as it is opened.
     const Scene spaced = w.services().scene();
-    trigger(w, "undoAction");
+    choose(w, "undoAction");
     store.open(spaced);
     w.settle();
     CHECK(w.services().scene().camera == spaced.camera);
     CHECK_FALSE(store.canUndoCamera());
-    trigger(w, "spacingOfFileAction");
+    choose(w, "spacingOfFileAction");
     CHECK(geometryOf(w).spacing == before.spacing);
     CHECK_FALSE(ofFile.isEnabled());
 }

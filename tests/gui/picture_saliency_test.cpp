@@ -20,7 +20,7 @@ using namespace pellucid::gui;
 
 namespace {
 
-using State = PictureSaliencyController::State;
+using SaliencyState = PictureSaliencyController::State;
 
 PictureSaliencyController& saliencyOf(OpenWindow& w) { return w.controllers().pictureSaliency; }
 
@@ -41,7 +41,7 @@ FeatureSaliency expected(OpenWindow& w) {
 }
 
 void checkShares(OpenWindow& w) {
-    REQUIRE(saliencyOf(w).state() == State::Current);
+    REQUIRE(saliencyOf(w).state() == SaliencyState::Current);
     const FeatureSaliency saliency = expected(w);
     double sum = 0;
     for (std::size_t f = 0; f < saliency.shares.size(); ++f) {
@@ -58,11 +58,11 @@ TEST_CASE("2D feature saliency follows the picture when the hand rests", "[pictu
     openPanel(w);
     auto& table = w.child<QTableView>("featuresTable");
     CHECK(table.isColumnHidden(FeaturesModel::PictureShare));
-    CHECK(saliencyOf(w).state() == State::Off);
+    CHECK(saliencyOf(w).state() == SaliencyState::Off);
     CHECK_FALSE(w.child<QPushButton>("pictureSaliencySave").isEnabled());
 
     w.child<QCheckBox>("pictureSaliencyCheck").click();
-    CHECK(saliencyOf(w).state() == State::Computing);
+    CHECK(saliencyOf(w).state() == SaliencyState::Computing);
     w.settle();
     checkShares(w);
     CHECK_FALSE(table.isColumnHidden(FeaturesModel::PictureShare));
@@ -74,7 +74,7 @@ TEST_CASE("2D feature saliency follows the picture when the hand rests", "[pictu
 
     SECTION("of another view") {
         drag(w.view(), w.view().rect().center(), w.view().rect().center() + QPoint(120, 40));
-        CHECK(saliencyOf(w).state() == State::Computing);
+        CHECK(saliencyOf(w).state() == SaliencyState::Computing);
         CHECK(*saliencyOf(w).share(0) == before); // of the one before, until the next comes
         w.settle();
         checkShares(w);
@@ -97,7 +97,7 @@ TEST_CASE("2D feature saliency follows the picture when the hand rests", "[pictu
     }
     SECTION("not of a field, and again after it") {
         w.child<QAction>("fieldAction").trigger();
-        CHECK(saliencyOf(w).state() == State::Field);
+        CHECK(saliencyOf(w).state() == SaliencyState::Field);
         CHECK_FALSE(saliencyOf(w).share(0));
         w.child<QAction>("fieldAction").trigger();
         w.settle();
@@ -105,7 +105,7 @@ TEST_CASE("2D feature saliency follows the picture when the hand rests", "[pictu
     }
     SECTION("until it is switched off") {
         w.child<QAction>("followPictureAction").trigger();
-        CHECK(saliencyOf(w).state() == State::Off);
+        CHECK(saliencyOf(w).state() == SaliencyState::Off);
         CHECK_FALSE(saliencyOf(w).share(0));
         CHECK(table.isColumnHidden(FeaturesModel::PictureShare));
     }

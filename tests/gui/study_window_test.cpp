@@ -19,6 +19,7 @@
 #include "dialogs/study_dialog.h"
 #include "dialogs/study_run_dialog.h"
 #include "dialogs/study_view_dialog.h"
+#include "gui_support.h"
 #include "play_study.h"
 #include "runner/study_window.h"
 #include "study/participation.h"
@@ -32,13 +33,6 @@ using pellucid::test::writePrepared;
 using Page = StudyWindow::Page;
 
 namespace {
-
-constexpr int kPatience = 120000; ///< ms: far longer than anything takes
-
-template <class Condition>
-bool waitFor(Condition condition) {
-    return QTest::qWaitFor(condition, kPatience);
-}
 
 constexpr double kTaskSeconds = 0.06, kImageSeconds = 0.12;
 

@@ -172,6 +172,7 @@ TEST_CASE("transfer functions with a range, without one, and a window of one's o
     const QTemporaryDir folder;
     OpenWindow w;
     const QString sample = "sample:shells";
+    constexpr int kSize = 32;
     TransferFunction plain = tents(4, 0.2), narrow = tents(2, 0.3), wide = tents(3, 0.15), bare = ramp(5);
     plain.points[1].color = {0.1234567, 0.5, 0.9}; // eight bits do not hold it
     narrow.range = ValueRange{60, 190};
@@ -179,12 +180,12 @@ TEST_CASE("transfer functions with a range, without one, and a window of one's o
     bare.features = {{"low", 0.1, 0.45, {1, 0, 0}, {}}, {"high", 0.5, 0.9, {0, 0, 1}, {}}};
     const QString noRange = writtenTf(folder, "plain.tf.json", plain), inside = writtenTf(folder, "n.tf.json", narrow),
                   beyond = writtenTf(folder, "w.tf.json", wide), features = writtenTf(folder, "f.tf.json", bare);
-    compareDoors(w, {sample, {}, {}, noRange, {}});
-    compareDoors(w, {sample, {}, {}, inside, {}});
-    compareDoors(w, {sample, {}, {}, beyond, {}});
-    compareDoors(w, {sample, {}, {}, features, {}});
-    compareDoors(w, {sample, {}, {}, inside, ValueRange{20.5, 230.25}});
-    compareDoors(w, {sample, {}, {}, "tents:5", ValueRange{50, 200}});
+    compareDoors(w, {sample, {}, {}, noRange, {}, kSize});
+    compareDoors(w, {sample, {}, {}, inside, {}, kSize});
+    compareDoors(w, {sample, {}, {}, beyond, {}, kSize});
+    compareDoors(w, {sample, {}, {}, features, {}, kSize});
+    compareDoors(w, {sample, {}, {}, inside, ValueRange{20.5, 230.25}, kSize});
+    compareDoors(w, {sample, {}, {}, "tents:5", ValueRange{50, 200}, kSize});
 }
 
 TEST_CASE("real volumes are the same through both doors", "[doors]") {

@@ -30,7 +30,7 @@ using namespace pellucid::gui;
 
 namespace {
 
-constexpr int kSide = 20, kFrames = 4;
+constexpr int kGridSide = 20, kFrames = 4;
 
 void writeGrid(const QString& path, const Int3& dims, double spacing, const std::function<double(const Vec3&)>& value) {
     Geometry geometry;
@@ -56,16 +56,16 @@ struct Weather {
     QTemporaryDir folder;
     Weather() {
         for (int f = 0; f < kFrames; ++f) {
-            writeGrid(folder.filePath(QStringLiteral("cloud%1.nrrd").arg(f)), {kSide, kSide, kSide}, 1,
+            writeGrid(folder.filePath(QStringLiteral("cloud%1.nrrd").arg(f)), {kGridSide, kGridSide, kGridSide}, 1,
                       [f](const Vec3& p) {
                           return std::max(ball(p, {5, 5, 10}, 5), ball(p, {8.0 + 2 * f, 14, 10}, 5));
                       });
-            writeGrid(folder.filePath(QStringLiteral("rain%1.nrrd").arg(f)), {kSide / 2, kSide / 2, kSide / 2}, 2,
-                      [f](const Vec3& p) {
+            writeGrid(folder.filePath(QStringLiteral("rain%1.nrrd").arg(f)),
+                      {kGridSide / 2, kGridSide / 2, kGridSide / 2}, 2, [f](const Vec3& p) {
                           return ball(p, {5, 5, 10}, 5.0 + f);
                       });
         }
-        writeGrid(folder.filePath("ground.nrrd"), {kSide, kSide, 1}, 1,
+        writeGrid(folder.filePath("ground.nrrd"), {kGridSide, kGridSide, 1}, 1,
                   [](const Vec3& p) { return 4 * std::sin(p.x / 4); });
     }
     VolumeSource series(const QString& name) const {
@@ -172,7 +172,7 @@ TEST_CASE("volatility colours what moves, and undo brings the colours of the cur
     // The resting ball is grey, the moving one has colour: voxels (5,5,10) and (14,14,10) of frame 3.
     const VoxelColors& colors = *w.services().scene().colors;
     const auto colorAt = [&](int x, int y, int z) {
-        const std::uint32_t c = colors.rgba[static_cast<std::size_t>(x + kSide * (y + kSide * z))];
+        const std::uint32_t c = colors.rgba[static_cast<std::size_t>(x + kGridSide * (y + kGridSide * z))];
         return QColor(static_cast<int>(c & 255), static_cast<int>(c >> 8 & 255), static_cast<int>(c >> 16 & 255));
     };
     CHECK(colorAt(5, 5, 10).saturation() == 0);
@@ -256,9 +256,9 @@ TEST_CASE("colours from any variable, at any frame, read each frame once and lea
     const Weather weather;
     // Beside what moves: a value that is the same everywhere, nothing but NaN, and a series that ends with frame 1.
     for (int f = 0; f < kFrames; ++f) {
-        writeGrid(weather.folder.filePath(QStringLiteral("flat%1.nrrd").arg(f)), {kSide, kSide, kSide}, 1,
+        writeGrid(weather.folder.filePath(QStringLiteral("flat%1.nrrd").arg(f)), {kGridSide, kGridSide, kGridSide}, 1,
                   [](const Vec3&) { return 3.0; });
-        writeGrid(weather.folder.filePath(QStringLiteral("void%1.nrrd").arg(f)), {kSide, kSide, kSide}, 1,
+        writeGrid(weather.folder.filePath(QStringLiteral("void%1.nrrd").arg(f)), {kGridSide, kGridSide, kGridSide}, 1,
                   [](const Vec3&) { return std::nan(""); });
     }
     OpenWindow w;
@@ -355,10 +355,10 @@ TEST_CASE("features are of the volatility: figures, refinement, optimization and
 
     // Of four frames with values 0 to 1: the moving ball is at 8 + 2f, where (14,14,10) has 0, 0.2, 0.6 and 1 or so.
     const std::shared_ptr<const Volume> deviation = w.document().volume();
-    const auto at = [](int x, int y, int z) { return static_cast<std::size_t>(x + kSide * (y + kSide * z)); };
+    const auto at = [](int x, int y, int z) { return static_cast<std::size_t>(x + kGridSide * (y + kGridSide * z)); };
     double sum = 0, squares = 0, most = 0;
     for (int f = 0; f < kFrames; ++f)
-        for (int x = 0; x < kSide; ++x) most = std::max(most, ball(Vec3(x, 14, 10), {8.0 + 2 * f, 14, 10}, 5));
+        for (int x = 0; x < kGridSide; ++x) most = std::max(most, ball(Vec3(x, 14, 10), {8.0 + 2 * f, 14, 10}, 5));
     REQUIRE(most == 1);
     for (int f = 0; f < kFrames; ++f) {
         const double value = ball({14, 14, 10}, {8.0 + 2 * f, 14, 10}, 5);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kTop = PELLUCID_SOURCE_DIR;
+const fs::path kRepository = PELLUCID_SOURCE_DIR;
 
 /// A string of the sources; literals that stand next to each other are one.
 struct Literal {
@@ -153,14 +153,14 @@ bool isHead(const Literal& literal) {
 std::vector<Literal> textsForPeople() {
     std::vector<fs::path> files;
     for (const char* folder : {"app", "src"})
-        for (const auto& entry : fs::recursive_directory_iterator(kTop / folder)) {
+        for (const auto& entry : fs::recursive_directory_iterator(kRepository / folder)) {
             const std::string suffix = entry.path().extension().string();
             if (suffix == ".h" || suffix == ".cpp") files.push_back(entry.path());
         }
     std::sort(files.begin(), files.end());
     std::vector<Literal> all;
     for (const fs::path& file : files)
-        for (Literal& literal : LiteralReader(fs::relative(file, kTop).generic_string(), readWhole(file)).read())
+        for (Literal& literal : LiteralReader(fs::relative(file, kRepository).generic_string(), readWhole(file)).read())
             if (isForPeople(literal)) all.push_back(std::move(literal));
     return all;
 }
@@ -207,7 +207,7 @@ TEST_CASE("strings are found in code as the compiler finds them", "[texts]") {
 }
 
 TEST_CASE("docs/texts.md has every text", "[texts]") {
-    const fs::path path = kTop / "docs/texts.md";
+    const fs::path path = kRepository / "docs/texts.md";
     const std::string list = listOf(textsForPeople());
     if (std::getenv("PELLUCID_REFRESH_DOCS") != nullptr) std::ofstream(path, std::ios::binary) << list;
     INFO("PELLUCID_REFRESH_DOCS=1 test_layering '[texts]' writes it anew");

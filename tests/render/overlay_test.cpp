@@ -60,7 +60,7 @@ TransferFunction risingTo(double peak, const Rgb& color) {
     return tf;
 }
 
-RenderSettings transparent(int width, int height) {
+RenderSettings onNothing(int width, int height) {
     RenderSettings settings;
     settings.width = width, settings.height = height;
     settings.background = {};
@@ -91,7 +91,7 @@ struct Component {
 
 /// docs/method.md, "The overlay", written out: equal steps of d0/250 along each ray, which at the
 /// ends of boxes and at planes may be off by half a step: by 0.5·0.73/250 = 0.0015 of alpha at the largest τ below.
-Image reference(const Component& first, const Component& second, const Camera& camera, const RenderSettings& settings) {
+Image drawnOver(const Component& first, const Component& second, const Camera& camera, const RenderSettings& settings) {
     Image image(settings.width, settings.height);
     const VoxelClipping clipping = clippingInVoxels(settings.clipping, first.geometry);
     const double step = first.geometry.d0() / 250, reach = first.geometry.radius() + second.geometry.radius();
@@ -165,7 +165,7 @@ TEST_CASE("what lies at a place of the overlay is seen where that place is", "[o
                 const double r = glm::length(second.worldFromVoxel(Vec3(i, j, k)) - place) / 4;
                 return std::max(0.0, 1 - r * r);
             });
-            RenderSettings settings = transparent(200, 200);
+            RenderSettings settings = onNothing(200, 200);
             settings.overlay = overlayOf(ball, first, risingTo(0.02, {1, 1, 1}));
             const Camera camera = cameraFromView(first, 30, 20, 1, projection);
             const Image image = makeCpuRenderer(clear)->render(camera, homogeneous(0), settings);
@@ -190,7 +190,7 @@ TEST_CASE("the picture of two volumes is that of two media along each ray", "[ov
         for (const double peak : {0.05, 0.4}) {
             const auto a = roughOn(first, 3, holes), b = roughOn(second, 4, holes);
             const TransferFunction tfA = risingTo(peak, {0.2, 0.5, 1}), tfB = risingTo(1.3 * peak, {1, 0.3, 0});
-            RenderSettings settings = transparent(12, 12);
+            RenderSettings settings = onNothing(12, 12);
             settings.overlay = overlayOf(b, first, tfB);
             if (holes) settings.clipping.lo = {0.3, 0, 0}, settings.clipping.planes = {{{0.2, 1, 0.4}, 4}};
             if (peak > 0.1) settings.clipping.rest = {{{0, 0, 0.2}, {1, 1, 1}, {{{-0.4, 1, 0.4}, 6}}}, 0.3};
@@ -199,7 +199,7 @@ TEST_CASE("the picture of two volumes is that of two media along each ray", "[ov
                 const Camera camera = cameraFromView(first, 40, 25, 1, projection);
                 INFO("peak " << peak << (holes ? ", holes" : ""));
                 CHECK(distance(makeCpuRenderer(a)->render(camera, tfA, settings),
-                               reference(one, other, camera, settings)) < 0.004);
+                               drawnOver(one, other, camera, settings)) < 0.004);
             }
         }
 }
@@ -210,12 +210,12 @@ TEST_CASE("a picture with a faint rest is that of a medium thinned there", "[ove
     const auto volume = roughOn(g, 3), nothing = volumeFrom(g, [](int, int, int) { return 0.0; });
     const TransferFunction tf = risingTo(0.4, {0.2, 0.5, 1});
     const Component one(*volume, g, tf), other(*nothing, g, homogeneous(0));
-    RenderSettings settings = transparent(24, 24);
+    RenderSettings settings = onNothing(24, 24);
     settings.clipping.hi.x = 0.9;
     settings.clipping.rest = {{{0.3, 0, 0.2}, {1, 0.8, 1}, {{{0.2, 1, 0.4}, 4}}}, 0.25};
     for (const Projection projection : {Projection::Orthographic, Projection::Perspective}) {
         const Camera camera = cameraFromView(g, 40, 25, 1, projection);
-        CHECK(distance(makeCpuRenderer(volume)->render(camera, tf, settings), reference(one, other, camera, settings)) <
+        CHECK(distance(makeCpuRenderer(volume)->render(camera, tf, settings), drawnOver(one, other, camera, settings)) <
               0.004);
     }
 }
@@ -226,7 +226,7 @@ TEST_CASE("it does not matter which of two volumes lies over which", "[overlay]"
     const auto a = roughOn(first, 3), b = roughOn(second, 4);
     const TransferFunction tfA = risingTo(0.2, {0.2, 0.5, 1}), tfB = risingTo(0.3, {1, 0.3, 0});
     const Camera camera = cameraFromView(first, 40, 25, 1, Projection::Perspective);
-    RenderSettings over = transparent(40, 40), under = over;
+    RenderSettings over = onNothing(40, 40), under = over;
     over.overlay = overlayOf(b, first, tfB);
     under.overlay = overlayOf(a, second, tfA);
     CHECK(distance(makeCpuRenderer(a)->render(camera, tfA, over), makeCpuRenderer(b)->render(camera, tfB, under)) <
@@ -240,7 +240,7 @@ TEST_CASE("an overlay over a clear volume looks as that volume alone does", "[ov
     const TransferFunction tf = risingTo(0.3, {1, 0.6, 0.3});
     const Camera camera = cameraFromView(g, 40, 25, 1.3, Projection::Perspective);
     for (const bool lit : {false, true}) {
-        RenderSettings settings = transparent(60, 50);
+        RenderSettings settings = onNothing(60, 50);
         settings.background = Rgb{0.1, 0.2, 0.3};
         settings.clipping.hi = {0.8, 1, 1};
         settings.jitter = lit;
@@ -261,7 +261,7 @@ TEST_CASE("rays that miss the overlay draw the same bits as without it", "[overl
     const auto a = roughOn(first, 3), b = roughOn(second, 4);
     const TransferFunction tf = risingTo(0.3, {0.2, 0.5, 1});
     const Camera camera = cameraFromView(first, 40, 25, 1, Projection::Perspective);
-    RenderSettings settings = transparent(64, 64);
+    RenderSettings settings = onNothing(64, 64);
     const Image without = makeCpuRenderer(a)->render(camera, tf, settings);
     const Geometry placed = overlayPlace(first, second).geometry;
     settings.overlay = overlayOf(b, first, risingTo(0.9, {1, 0, 0}));
@@ -293,7 +293,7 @@ TEST_CASE("leaping, kernels and previews draw the same of two volumes", "[overla
     const Camera camera = cameraFromView(first, 40, 25, 1, Projection::Perspective);
     const TransferFunction tf = tents(6, 0.3);
     for (const bool lit : {false, true}) {
-        RenderSettings settings = transparent(48, 40);
+        RenderSettings settings = onNothing(48, 40);
         settings.overlay = overlayOf(b, first, tents(4, 0.2));
         settings.light.on = lit;
         settings.jitter = lit;
@@ -313,7 +313,7 @@ TEST_CASE("in the other modes the overlay lies in front", "[overlay]") {
     const Camera camera = cameraFromView(first, 40, 25, 1, Projection::Perspective);
     const TransferFunction tf = tents(3, 0.3), over = risingTo(0.2, {1, 0.3, 0});
     for (const RenderMode mode : {RenderMode::Mip, RenderMode::Average, RenderMode::Surface}) {
-        RenderSettings settings = transparent(32, 32);
+        RenderSettings settings = onNothing(32, 32);
         settings.mode = mode;
         const Image behind = makeCpuRenderer(a)->render(camera, tf, settings);
         settings.overlay = overlayOf(b, first, over);

@@ -49,13 +49,13 @@ StudyAnalysis smallAnalysis() {
     return analyzeStudy(smallStudy(), {someone("p1", {4, 1, 2}, 5), someone("p2", {4, 2, 3}, 4)});
 }
 
-std::size_t countOf(const std::string& text, const std::string& part) {
+std::size_t timesIn(const std::string& text, const std::string& part) {
     std::size_t count = 0;
     for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
     return count;
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 } // namespace
 
@@ -105,10 +105,10 @@ TEST_CASE("dots without a line, and intervals around them", "[report]") {
 
 TEST_CASE("a study's points as a table", "[report][study]") {
     const std::string csv = csvOf(smallAnalysis());
-    CHECK(has(csv, "stimulus,volume,feature,word,repeat,scores,mos,deviation,low,high,vws,fv,2dfs\n"));
-    CHECK(has(csv, "\na1,tooth,f1,RED,0,2,4,0,4,4,0.3,,\n"));
-    CHECK(has(csv, "\na1,tooth,f1,RED,1,2,4.5,0.7071067811865476,"));
-    CHECK(countOf(csv, "\n") == 5);
+    CHECK(contains(csv, "stimulus,volume,feature,word,repeat,scores,mos,deviation,low,high,vws,fv,2dfs\n"));
+    CHECK(contains(csv, "\na1,tooth,f1,RED,0,2,4,0,4,4,0.3,,\n"));
+    CHECK(contains(csv, "\na1,tooth,f1,RED,1,2,4.5,0.7071067811865476,"));
+    CHECK(timesIn(csv, "\n") == 5);
 }
 
 TEST_CASE("the page of a study says what came of it", "[report][study]") {
@@ -125,18 +125,18 @@ TEST_CASE("the page of a study says what came of it", "[report][study]") {
     StudyReport report = makeStudyReport(folder.path(""), {});
     report.command = "pellucid-cli study analyze <DIR>";
     const std::string html = htmlOf(report);
-    CHECK(has(html, "4 of 5 participants gave 64 scores to 12 pictures, 4 of them shown twice."));
-    CHECK(has(html, "All of them are simulated"));
-    CHECK(has(html, "no: colour vision is deficient"));
-    CHECK(has(html, "The picture of a2 cannot be shown"));
-    CHECK(countOf(html, "<img src=\"data:image/png;base64,") == 11); // not that of the training
+    CHECK(contains(html, "4 of 5 participants gave 64 scores to 12 pictures, 4 of them shown twice."));
+    CHECK(contains(html, "All of them are simulated"));
+    CHECK(contains(html, "no: colour vision is deficient"));
+    CHECK(contains(html, "The picture of a2 cannot be shown"));
+    CHECK(timesIn(html, "<img src=\"data:image/png;base64,") == 11); // not that of the training
     // Figure 4.14, one feature of one volume, consistency.
-    CHECK(countOf(html, "<svg") == 5);
-    for (const char* thesis : {"0.67508", "0.678626", "0.550472"}) CHECK(has(html, thesis));
-    CHECK(has(html, "VWS and FV cannot be told apart: the difference of their correlations is 0.000"));
-    CHECK(has(html, "study analyze &lt;DIR&gt;"));
-    CHECK(has(html, "data:text/csv;base64,"));
-    CHECK_FALSE(has(html, "nan"));
+    CHECK(timesIn(html, "<svg") == 5);
+    for (const char* thesis : {"0.67508", "0.678626", "0.550472"}) CHECK(contains(html, thesis));
+    CHECK(contains(html, "VWS and FV cannot be told apart: the difference of their correlations is 0.000"));
+    CHECK(contains(html, "study analyze &lt;DIR&gt;"));
+    CHECK(contains(html, "data:text/csv;base64,"));
+    CHECK_FALSE(contains(html, "nan"));
 }
 
 TEST_CASE("hostile texts of a study are only texts on its page", "[report][study]") {
@@ -153,9 +153,9 @@ TEST_CASE("hostile texts of a study are only texts on its page", "[report][study
                        .program = evil};
     for (int i = 0; i < 3; ++i) report.pictures.push_back(encoded(Image(2, 2)));
     const std::string html = htmlOf(report);
-    CHECK_FALSE(has(html, "<script"));
-    CHECK_FALSE(has(html, "alert(\"1\")"));
-    CHECK(countOf(html, "&lt;script&gt;") > 15);
+    CHECK_FALSE(contains(html, "<script"));
+    CHECK_FALSE(contains(html, "alert(\"1\")"));
+    CHECK(timesIn(html, "&lt;script&gt;") > 15);
 }
 
 TEST_CASE("a study that nobody took part in has no page", "[report][study]") {

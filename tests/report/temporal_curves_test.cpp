@@ -29,7 +29,7 @@ FrameFigures figuresAt(int frame, std::vector<double> vws, double objective) {
 }
 
 /// Frames 2 to 6, of which 4 is broken.
-TemporalCurves example() {
+TemporalCurves twoCurves() {
     TemporalCurves curves;
     curves.features = {"skin", "=bone"};
     curves.colors = {{1, 0, 0}, {0, 0, 1}};
@@ -47,7 +47,7 @@ TemporalCurves example() {
 } // namespace
 
 TEST_CASE("curves of a series have a gap where a frame is broken", "[temporal]") {
-    const TemporalCurves curves = example();
+    const TemporalCurves curves = twoCurves();
     const Plot vws = temporalVwsPlot(curves, 0);
     // Two pieces of each feature, and of its target; each name once.
     REQUIRE(vws.series.size() == 8);
@@ -67,7 +67,7 @@ TEST_CASE("curves of a series have a gap where a frame is broken", "[temporal]")
 }
 
 TEST_CASE("runs are compared in the plots of F and flicker, and VWS have one axis", "[temporal]") {
-    const TemporalCurves curves = example();
+    const TemporalCurves curves = twoCurves();
     const Plot f = temporalObjectivePlot(curves);
     REQUIRE(f.series.size() == 3); // two pieces, and the static one
     CHECK(f.series[0].name == "optimize");
@@ -87,7 +87,7 @@ TEST_CASE("runs are compared in the plots of F and flicker, and VWS have one axi
 }
 
 TEST_CASE("the table of a series has a line per frame and run", "[temporal]") {
-    const std::string csv = csvOf(example());
+    const std::string csv = csvOf(twoCurves());
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 8); // the head, five frames and two
     CHECK(csv.rfind("run,frame,file,time,F,flicker,moves,seconds,VWS skin,target skin,FV skin,opacity skin,VWS =bone,"
                     "target =bone,FV =bone,opacity =bone,problem\n",
@@ -98,7 +98,7 @@ TEST_CASE("the table of a series has a line per frame and run", "[temporal]") {
 }
 
 TEST_CASE("2D feature saliency has curves and columns where pictures were looked at", "[temporal]") {
-    TemporalCurves curves = example();
+    TemporalCurves curves = twoCurves();
     CHECK_FALSE(curves.hasPictures());
     curves.runs[0].frames[1].fs = {0.75, 0.25}; // of frame 3 alone
     CHECK(curves.hasPictures());
@@ -115,7 +115,7 @@ TEST_CASE("2D feature saliency has curves and columns where pictures were looked
 }
 
 TEST_CASE("figures of a series are means over what could be read", "[temporal]") {
-    const SequenceFigures s = summaryOf(example().runs[0].frames);
+    const SequenceFigures s = summaryOf(twoCurves().runs[0].frames);
     CHECK(s.frames == 4);
     CHECK(s.broken == 1);
     CHECK(s.rms == Approx(std::sqrt((0.02 * 0.02 + 0.01 * 0.01) / 4)));
@@ -125,7 +125,7 @@ TEST_CASE("figures of a series are means over what could be read", "[temporal]")
 }
 
 TEST_CASE("plots are pictures", "[temporal]") {
-    const std::array plots{temporalVwsPlot(example(), 0), temporalObjectivePlot(example())};
+    const std::array plots{temporalVwsPlot(twoCurves(), 0), temporalObjectivePlot(twoCurves())};
     const PlotPage page{.width = 300, .height = 200};
     const Image image = imageOf(plots, page, 2);
     CHECK(image.width == 600);

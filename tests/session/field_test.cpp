@@ -12,7 +12,7 @@ using namespace pellucid;
 
 namespace {
 
-Scene sceneOf(const std::string& tf) {
+Scene sampleScene(const std::string& tf) {
     SceneInputs in;
     VolumeSource source;
     source.path = "sample:shells";
@@ -32,7 +32,7 @@ double sum(const Field& field) {
 } // namespace
 
 TEST_CASE("fields of features sum to the figures", "[session][fields]") {
-    const MeasureInput input = measureInput(sceneOf("tents:3:0.1"));
+    const MeasureInput input = measureInput(sampleScene("tents:3:0.1"));
     Workspace workspace;
     const Measures measures = workspace.measure(input);
     const Field visibility = workspace.field(input, FieldKind::Visibility);
@@ -53,7 +53,7 @@ TEST_CASE("fields of features sum to the figures", "[session][fields]") {
 }
 
 TEST_CASE("a field is stopped, and refused where memory does not suffice", "[session][fields]") {
-    const MeasureInput input = measureInput(sceneOf("tents:3"));
+    const MeasureInput input = measureInput(sampleScene("tents:3"));
     Workspace workspace;
     std::stop_source stop;
     stop.request_stop();
@@ -93,7 +93,7 @@ TEST_CASE("a field is drawn from its threshold to its top", "[session][fields]")
     CHECK(own.opacity(0.6) == Approx(0.2));
 
     // The values 0 … top of a field lie below intensity top / largest of its volume.
-    Scene scene = sceneOf("tents:3:0.1");
+    Scene scene = sampleScene("tents:3:0.1");
     view.feature = 0;
     view.colorMap = "grey";
     view.top = 0.05;
@@ -118,7 +118,7 @@ TEST_CASE("a field is drawn from its threshold to its top", "[session][fields]")
 }
 
 TEST_CASE("the picture of a field is of the same view, other than that of the data", "[session][fields]") {
-    Scene scene = sceneOf("tents:3:0.1");
+    Scene scene = sampleScene("tents:3:0.1");
     scene.session.field.edit([](FieldView& f) { f.kind = FieldKind::Visibility; });
     Workspace workspace;
     const Field field = workspace.field(measureInput(scene), FieldKind::Visibility);
@@ -134,7 +134,7 @@ TEST_CASE("the picture of a field is of the same view, other than that of the da
 }
 
 TEST_CASE("fields that depend on no view are asked for without one", "[session][fields]") {
-    Scene scene = sceneOf("tents:2:0.3");
+    Scene scene = sampleScene("tents:2:0.3");
     const auto inputOf = [&](FieldKind kind) {
         scene.session.field.edit([&](FieldView& f) { f.kind = kind; });
         return fieldInput(scene);

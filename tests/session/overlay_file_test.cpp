@@ -182,7 +182,7 @@ TEST_CASE("an overlay goes through a session file", "[overlay]") {
     writeSession(session, path);
     CHECK(*readSession(path).session.overlay == *session.overlay);
     // Beside the session: named by where it lies from there.
-    const nlohmann::json json =
+    const nlohmann::json written =
         jsonFromSession(session, std::filesystem::path(path).parent_path().string(), DataPaths::Relative);
-    CHECK(json["overlay"]["source"]["path"] == "map.nrrd");
+    CHECK(written["overlay"]["source"]["path"] == "map.nrrd");
 }

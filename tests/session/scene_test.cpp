@@ -38,11 +38,11 @@ TransferFunction tentInDataUnits() {
     return tf;
 }
 
-struct Files {
+struct SceneFiles {
     TempFolder folder;
     std::string volume = folder.write("v.raw", ramp());
     std::string tf = folder.path("a.tf.json");
-    Files() { writeTf(tentInDataUnits(), tf); }
+    SceneFiles() { writeTf(tentInDataUnits(), tf); }
 
     SceneInputs inputs() const {
         SceneInputs inputs;
@@ -61,7 +61,7 @@ double dataValue(double x, const Scene& scene) { return scene.volume->valueOfInt
 } // namespace
 
 TEST_CASE("the window: what is asked for, else the TF file's, else the session's, else the data's", "[session]") {
-    const Files files;
+    const SceneFiles files;
     SceneInputs in = files.inputs();
     Scene scene = openScene(in);
     CHECK(scene.volume->range() == ValueRange{0, 215});
@@ -86,7 +86,7 @@ TEST_CASE("the window: what is asked for, else the TF file's, else the session's
 }
 
 TEST_CASE("a transfer function keeps its data values whatever the window is", "[session]") {
-    const Files files;
+    const SceneFiles files;
     SceneInputs in = files.inputs();
     in.tf = files.tf;
     for (const std::optional<ValueRange> range :
@@ -110,7 +110,7 @@ TEST_CASE("a transfer function keeps its data values whatever the window is", "[
 }
 
 TEST_CASE("a transfer function that says of no values is of the window", "[session]") {
-    const Files files;
+    const SceneFiles files;
     SceneInputs in = files.inputs();
     in.tf = "tents:3";
     in.range = ValueRange{50, 60};
@@ -138,7 +138,7 @@ TEST_CASE("a transfer function that says of no values is of the window", "[sessi
 }
 
 TEST_CASE("a session's transfer function is found again through another window", "[session]") {
-    const Files files;
+    const SceneFiles files;
     SceneInputs in = files.inputs();
     in.tf = files.tf;
     const Scene saved = openScene(in);
@@ -154,7 +154,7 @@ TEST_CASE("a session's transfer function is found again through another window",
 }
 
 TEST_CASE("data of one value alone can be opened", "[session]") {
-    const Files files;
+    const SceneFiles files;
     SceneInputs in;
     in.session = sessionOf(rawSource(files.folder.write("constant.raw", std::string(216, '\7'))));
     Scene scene = openScene(in);
@@ -282,7 +282,7 @@ TEST_CASE("nothing to open is wrong usage", "[session]") {
 }
 
 TEST_CASE("the camera: what is asked for, else the session's, else the home view", "[session]") {
-    const Files files;
+    const SceneFiles files;
     SceneInputs in = files.inputs();
     const Scene home = openScene(in);
     const Geometry geometry = home.volume->geometry();
@@ -329,7 +329,7 @@ TEST_CASE("the camera: what is asked for, else the session's, else the home view
 }
 
 TEST_CASE("what has not changed is not made again", "[session]") {
-    const Files files;
+    const SceneFiles files;
     const Scene first = openScene(files.inputs());
     Session session = first.session;
     CHECK_FALSE(needsData(session, first));
@@ -364,7 +364,7 @@ TEST_CASE("what has not changed is not made again", "[session]") {
 }
 
 TEST_CASE("codes are shared by all who hold a volume in its window", "[session]") {
-    const Files files;
+    const SceneFiles files;
     const Scene scene = openScene(files.inputs());
     auto one = sharedIntensityGrid(*scene.volume);
     const auto two = sharedIntensityGrid(*scene.volume);
@@ -377,7 +377,7 @@ TEST_CASE("codes are shared by all who hold a volume in its window", "[session]"
 }
 
 TEST_CASE("a picture is made of what the session shows", "[session]") {
-    const Files files;
+    const SceneFiles files;
     SceneInputs in = files.inputs();
     in.tf = "tents:3";
     Scene scene = openScene(in);

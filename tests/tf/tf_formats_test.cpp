@@ -43,7 +43,7 @@ bool says(const std::vector<std::string>& notices, const std::string& words) {
     return std::ranges::any_of(notices, [&](const std::string& n) { return n.find(words) != std::string::npos; });
 }
 
-Geometry volume(Int3 dims, Vec3 spacing) {
+Geometry gridLike(Int3 dims, Vec3 spacing) {
     Geometry g;
     g.dims = dims;
     g.spacing = spacing;
@@ -65,7 +65,7 @@ TransferFunction sample() {
 
 TEST_CASE("each format writes what it reads back as the same curves", "[tf][formats]") {
     const TransferFunction tf = sample();
-    const Geometry g = volume({120, 100, 80}, {0.5, 0.6, 1.5});
+    const Geometry g = gridLike({120, 100, 80}, {0.5, 0.6, 1.5});
     for (const TfFormat& format : tfFormats()) {
         INFO(format.name);
         const std::string name = format.name;
@@ -95,7 +95,7 @@ TEST_CASE("what is lost is said", "[tf][formats]") {
     TransferFunction tf = sample();
     tf.points[5].opacity = 0.0005; // over paths of another length still below a step of 8 bits
     tf = withFeatureHidden(tf, 0, true);
-    const Geometry g = volume(Int3(64), Vec3(1));
+    const Geometry g = gridLike(Int3(64), Vec3(1));
     for (const TfFormat& format : tfFormats().subspan(1)) {
         INFO(format.name);
         const std::vector<std::string> losses = writtenTf(format, {tf, {}, g, "mine"}).losses;
@@ -120,7 +120,7 @@ TEST_CASE("programs that lay a curve over the data get it for all values of the 
     ramp.points = {{0, 0.2, {1, 0, 0}, false, {}}, {1, 0.6, {0, 0, 1}, false, {}}};
     ramp.range = ValueRange{-1000, 3000};
     const TransferFunction hidden = withFeatureHidden(sample(), 0, true); // −600 to 600
-    const Geometry g = volume(Int3(64), Vec3(1));
+    const Geometry g = gridLike(Int3(64), Vec3(1));
     for (const char* name : {"itksnap", "imagevis3d"})
         for (const TransferFunction& tf : {sample(), ramp, hidden})
             for (const ValueRange& data : {ValueRange{-2000, 6000}, ValueRange{-500, 500}}) {
@@ -165,7 +165,7 @@ TEST_CASE("programs that lay a curve over the data get it for all values of the 
 }
 
 TEST_CASE("a file without a range is told with its positions and the values that they are put on", "[tf][formats]") {
-    const Geometry g = volume(Int3(64), Vec3(1));
+    const Geometry g = gridLike(Int3(64), Vec3(1));
     const ReadTf preset = readOf("paraview", R"([{"Name": "a", "RGBPoints": [-1, 0, 0, 0, 1, 1, 1, 1]}])");
     CHECK(preset.positions == ValueRange{-1, 1});
     CHECK(says(openingNotices(preset, g, ValueRange{40, 80}), "its positions -1 to 1 are put on the values 40 to 80"));
@@ -178,7 +178,7 @@ TEST_CASE("opacities are written for the length that a program takes them for", 
     TransferFunction tf;
     tf.points = {{0, 0.5, {1, 1, 1}, false, {}}, {1, 0.5, {1, 1, 1}, false, {}}};
     tf.range = ValueRange{0, 10};
-    const Geometry g = volume(Int3(101), Vec3(2)); // d0 = 2
+    const Geometry g = gridLike(Int3(101), Vec3(2)); // d0 = 2
     const auto first = [&](const char* name) {
         const TfFormat& format = tfFormatNamed(name);
         return format.read(ForeignFile("a", writtenTf(format, {tf, {}, g, ""}).text)).tf.points.front().opacity;
@@ -208,7 +208,7 @@ TEST_CASE("a slab hides what the power law says, whatever the program", "[tf][fo
         const std::string property = R"({"volumeProperties": [{"components": [{"scalarOpacityUnitDistance": )" +
                                      std::to_string(unit) + R"(, "scalarOpacity": {"points": [{"x": 0, "y": )" + alpha +
                                      R"(}, {"x": 1, "y": )" + alpha + "}]}}]}]}";
-        const TransferFunction tf = forVolume(readOf("slicer", property), volume(Int3(20), Vec3(1)));
+        const TransferFunction tf = forVolume(readOf("slicer", property), gridLike(Int3(20), Vec3(1)));
         return opacityPer(tf.opacity(0.5), 20); // 20 reference lengths of 1
     };
     CHECK(slab(0.05, 1) == Approx(0.6415).margin(1e-4));
@@ -336,7 +336,8 @@ TEST_CASE("each of 3D Slicer's presets in a file is opened by its name", "[tf][f
     CHECK(two.tf.color(at(two, 100)).b == Approx(0.6));
     CHECK(says(two.notices, "opacity by gradient is kept"));
     // Of 1 mm: of voxels 0.5 mm apart 1 − √0.6.
-    CHECK(forVolume(two, volume(Int3(8), Vec3(0.5))).opacity(at(two, 125)) == Approx(1 - std::sqrt(0.6)).margin(0.002));
+    CHECK(forVolume(two, gridLike(Int3(8), Vec3(0.5))).opacity(at(two, 125)) ==
+          Approx(1 - std::sqrt(0.6)).margin(0.002));
     const std::string again = writtenTf(slicerXmlFormat(), {two.tf, {}, {}, "again"}).text;
     CHECK_THAT(again, Contains("gradientOpacity=\"6 0 0 10 0.5 80 1\"") && Contains("ambient=\"0.3\"") &&
                           Contains("interpolation=\"0\"") && Contains("shade=\"0\""));
@@ -500,7 +501,7 @@ TEST_CASE("files of Inviwo, niivue, ImageVis3D, MITK and ITK-SNAP are read as th
 }
 
 TEST_CASE("a file of Voreen that is written keeps its steps as split keys", "[tf][formats]") {
-    const std::string text = writtenTf(voreenFormat(), {sample(), {}, volume(Int3(200), Vec3(1)), ""}).text;
+    const std::string text = writtenTf(voreenFormat(), {sample(), {}, gridLike(Int3(200), Vec3(1)), ""}).text;
     CHECK_THAT(text, Contains("<domain x=\"-1000\" y=\"3000\" />") && Contains("<split value=\"true\" />"));
     const ReadTf read = readOf("voreen", text);
     CHECK(read.tf.opacity(0.24999) == Approx(0.3).margin(0.003)); // a cube of 200: 1/200 of it is a voxel
@@ -513,7 +514,7 @@ TEST_CASE("opacities of Voreen's own files are opened as those of a voxel, and c
                              "<key><intensity value=\"0\"/><colorL r=\"255\" g=\"0\" b=\"0\" a=\"51\"/></key>"
                              "<key><intensity value=\"1\"/><colorL r=\"255\" g=\"0\" b=\"0\" a=\"51\"/></key>"
                              "</Keys></TransFuncIntensity></VoreenData>";
-    const Geometry g = volume(Int3(100), Vec3(1));
+    const Geometry g = gridLike(Int3(100), Vec3(1));
     const ReadTf read = readOf("voreen", text);
     CHECK(read.opensAsItIs);
     CHECK(forVolume(read, g).opacity(0.5) == Approx(0.2));
@@ -632,7 +633,7 @@ TEST_CASE("colours, opacities and range are taken one by one", "[tf][formats][pa
 }
 
 TEST_CASE("snippets have every point, and lists that Python takes", "[tf][formats][snippets]") {
-    const TfToWrite writing(sample(), {}, volume(Int3(10), {0.5, 1, 1}), "");
+    const TfToWrite writing(sample(), {}, gridLike(Int3(10), {0.5, 1, 1}), "");
     CHECK(tfSnippets().size() == 4);
     for (const TfSnippet& snippet : tfSnippets()) {
         const std::string text = snippet.text(writing);
@@ -653,7 +654,7 @@ TEST_CASE("lines of Python tell the losses that files tell", "[tf][formats][snip
         CHECK(says(losses, "no volume is known"));
         CHECK(says(losses, "of at most 0.0001") == (std::string(snippet.name) != "napari"));
         const std::vector<std::string> placed =
-            writtenTf(snippet, {tf, ValueRange{0, 9}, volume(Int3(10), Vec3(1)), ""}).losses;
+            writtenTf(snippet, {tf, ValueRange{0, 9}, gridLike(Int3(10), Vec3(1)), ""}).losses;
         CHECK_FALSE(says(placed, "is known"));
     }
 }

@@ -19,7 +19,7 @@ TransferFunction tfOf(std::vector<ControlPoint> points, std::vector<Feature> fea
 
 Feature feature(const std::string& name, double a, double b) { return {name, a, b, {1, 0, 0}, {}}; }
 
-const Rgb kRed{1, 0, 0}, kBlue{0, 0, 1};
+const Rgb kRedEnd{1, 0, 0}, kBlueEnd{0, 0, 1};
 
 /// A tent of the height `peak` over [a, b].
 std::vector<ControlPoint> tent(double a, double b, double peak, const Rgb& color) {
@@ -29,7 +29,7 @@ std::vector<ControlPoint> tent(double a, double b, double peak, const Rgb& color
 } // namespace
 
 TEST_CASE("a way between transfer functions begins and ends at these", "[tf]") {
-    const TransferFunction a = tfOf(tent(0.1, 0.3, 0.5, kRed), {feature("skin", 0.1, 0.3)});
+    const TransferFunction a = tfOf(tent(0.1, 0.3, 0.5, kRedEnd), {feature("skin", 0.1, 0.3)});
     TransferFunction b = tents(4);
     b.range = ValueRange{-50, 200};
     CHECK(tfMorph(a, b, 0) == a);
@@ -45,8 +45,8 @@ TEST_CASE("a way between transfer functions begins and ends at these", "[tf]") {
 }
 
 TEST_CASE("points that belong together go straight, colours through CIELAB", "[tf]") {
-    const TransferFunction a = tfOf(tent(0.1, 0.3, 0.2, kRed), {feature("skin", 0.1, 0.3)});
-    const TransferFunction b = tfOf(tent(0.5, 0.9, 0.6, kBlue), {feature("skin", 0.5, 0.9)});
+    const TransferFunction a = tfOf(tent(0.1, 0.3, 0.2, kRedEnd), {feature("skin", 0.1, 0.3)});
+    const TransferFunction b = tfOf(tent(0.5, 0.9, 0.6, kBlueEnd), {feature("skin", 0.5, 0.9)});
     const TransferFunction half = tfMorph(a, b, 0.5);
     REQUIRE(half.points.size() == 3);
     CHECK(half.points[0].x == Approx(0.3));
@@ -54,16 +54,16 @@ TEST_CASE("points that belong together go straight, colours through CIELAB", "[t
     CHECK(half.points[1].opacity == Approx(0.4));
     CHECK(half.features[0].b == Approx(0.6));
     // The mean of both in CIELAB, as far as sRGB has it: lightness is kept.
-    const double wanted = (labFromSrgb(kRed).lightness + labFromSrgb(kBlue).lightness) / 2;
+    const double wanted = (labFromSrgb(kRedEnd).lightness + labFromSrgb(kBlueEnd).lightness) / 2;
     CHECK(labFromSrgb(half.points[1].color).lightness == Approx(wanted).margin(2));
 }
 
 TEST_CASE("a feature that moves takes its curve along, whatever points it has", "[tf]") {
-    const TransferFunction a = tfOf(tent(0.2, 0.4, 0.8, kRed), {feature("skin", 0.2, 0.4)});
+    const TransferFunction a = tfOf(tent(0.2, 0.4, 0.8, kRedEnd), {feature("skin", 0.2, 0.4)});
     // As wide, with a flat top of five points, elsewhere.
-    std::vector<ControlPoint> flat = tent(0.6, 0.8, 0.8, kRed);
-    flat.insert(flat.begin() + 1, {0.65, 0.8, kRed, false, {}});
-    flat.insert(flat.begin() + 3, {0.75, 0.8, kRed, false, {}});
+    std::vector<ControlPoint> flat = tent(0.6, 0.8, 0.8, kRedEnd);
+    flat.insert(flat.begin() + 1, {0.65, 0.8, kRedEnd, false, {}});
+    flat.insert(flat.begin() + 3, {0.75, 0.8, kRedEnd, false, {}});
     const TransferFunction b = tfOf(flat, {feature("skin", 0.6, 0.8)});
     const TransferFunction half = tfMorph(a, b, 0.5);
     half.validate();
@@ -77,9 +77,9 @@ TEST_CASE("a feature that moves takes its curve along, whatever points it has", 
 }
 
 TEST_CASE("a feature that one has alone fades where it is", "[tf]") {
-    const TransferFunction a = tfOf(tent(0.1, 0.3, 0.4, kRed), {feature("skin", 0.1, 0.3)});
-    std::vector<ControlPoint> points = tent(0.1, 0.3, 0.4, kRed);
-    for (const ControlPoint& p : tent(0.6, 0.8, 0.9, kBlue)) points.push_back(p);
+    const TransferFunction a = tfOf(tent(0.1, 0.3, 0.4, kRedEnd), {feature("skin", 0.1, 0.3)});
+    std::vector<ControlPoint> points = tent(0.1, 0.3, 0.4, kRedEnd);
+    for (const ControlPoint& p : tent(0.6, 0.8, 0.9, kBlueEnd)) points.push_back(p);
     const TransferFunction b = tfOf(points, {feature("skin", 0.1, 0.3), feature("bone", 0.6, 0.8)});
     for (const double t : {0.25, 0.5, 0.75}) {
         const TransferFunction tf = tfMorph(a, b, t);
@@ -91,12 +91,13 @@ TEST_CASE("a feature that one has alone fades where it is", "[tf]") {
 }
 
 TEST_CASE("steps stay steps, and what an eye hides is transparent", "[tf]") {
-    const TransferFunction a = tfOf({{0.5, 0, kRed, false, {}}, {0.5, 0.6, kRed, false, {}}, {1, 0.6, kRed, false, {}}},
-                                    {feature("f", 0.5, 1)});
-    TransferFunction b = tfOf({{0.5, 0, kRed, false, {}},
-                               {0.5, 0.2, kRed, false, {}},
-                               {0.7, 0.2, kRed, false, {}},
-                               {1, 0.2, kRed, false, {}}},
+    const TransferFunction a =
+        tfOf({{0.5, 0, kRedEnd, false, {}}, {0.5, 0.6, kRedEnd, false, {}}, {1, 0.6, kRedEnd, false, {}}},
+             {feature("f", 0.5, 1)});
+    TransferFunction b = tfOf({{0.5, 0, kRedEnd, false, {}},
+                               {0.5, 0.2, kRedEnd, false, {}},
+                               {0.7, 0.2, kRedEnd, false, {}},
+                               {1, 0.2, kRedEnd, false, {}}},
                               {feature("f", 0.5, 1)});
     TransferFunction half = tfMorph(a, b, 0.5);
     CHECK(half.opacity(0.4999) == Approx(0).margin(1e-9));
@@ -109,8 +110,8 @@ TEST_CASE("steps stay steps, and what an eye hides is transparent", "[tf]") {
 }
 
 TEST_CASE("features that change places make no curve that goes back", "[tf]") {
-    std::vector<ControlPoint> points = tent(0.1, 0.3, 0.4, kRed);
-    for (const ControlPoint& p : tent(0.6, 0.8, 0.9, kBlue)) points.push_back(p);
+    std::vector<ControlPoint> points = tent(0.1, 0.3, 0.4, kRedEnd);
+    for (const ControlPoint& p : tent(0.6, 0.8, 0.9, kBlueEnd)) points.push_back(p);
     const TransferFunction a = tfOf(points, {feature("one", 0.1, 0.3), feature("two", 0.6, 0.8)});
     const TransferFunction b = tfOf(points, {feature("two", 0.1, 0.3), feature("one", 0.6, 0.8)});
     for (double t = 0.05; t < 1; t += 0.05) CHECK_NOTHROW(tfMorph(a, b, t).validate());

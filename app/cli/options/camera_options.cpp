@@ -7,13 +7,13 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kGroup = "View";
+constexpr const char* kCameraGroup = "View";
 
 } // namespace
 
 void CameraOptions::add(CLI::App& app) {
     m_added = true;
-    addValue(app, "--camera", "FILE", file, anyText, "camera file (JSON)", kGroup);
+    addValue(app, "--camera", "FILE", file, anyText, "camera file (JSON)", kCameraGroup);
     addView(app, "--view",
             "degrees; 0,0 looks along +y from the front, z up; or anterior, posterior, left, right, superior, "
             "inferior, front, back, top, bottom; zoom 1 fits the sphere around the box" +
@@ -22,7 +22,7 @@ void CameraOptions::add(CLI::App& app) {
                 std::string(fallback ? "30,20)"
                                      : "the view that the window opens on, fitted to what is drawn; with a --tf of "
                                        "yours 30,20, fitted to the box)"));
-    app.add_flag("--orthographic", orthographic, "parallel rays (default: perspective)")->group(kGroup);
+    app.add_flag("--orthographic", orthographic, "parallel rays (default: perspective)")->group(kCameraGroup);
 }
 
 void CameraOptions::addView(CLI::App& app, const std::string& name, const std::string& help) {
@@ -42,7 +42,7 @@ void CameraOptions::addView(CLI::App& app, const std::string& name, const std::s
             else
                 view = std::get<ViewAngles>(worded);
         },
-        help, kGroup);
+        help, kCameraGroup);
 }
 
 void CameraOptions::applyTo(SceneInputs& inputs) const {

@@ -7,17 +7,17 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kGroup = "Engine";
+constexpr const char* kEngineGroup = "Engine";
 
 bool isPublished(const MeasureSettings& settings) { return settings.profile == Profile::Published; }
 
 } // namespace
 
-void EngineOptions::add(CLI::App& app) { given.add(app, kGroup, {"engine", "quality"}); }
+void EngineOptions::add(CLI::App& app) { given.add(app, kEngineGroup, {"engine", "quality"}); }
 
-void EngineOptions::addProfile(CLI::App& app) { given.add(app, kGroup, {"profile", "along"}); }
+void EngineOptions::addProfile(CLI::App& app) { given.add(app, kEngineGroup, {"profile", "along"}); }
 
-void EngineOptions::addDefinitions(CLI::App& app) { given.add(app, kGroup, {"profile"}); }
+void EngineOptions::addDefinitions(CLI::App& app) { given.add(app, kEngineGroup, {"profile"}); }
 
 void EngineOptions::applyTo(SceneInputs& inputs) const {
     inputs.session.measure.edit([this](MeasureSettings& m) { given.applyTo(m); });

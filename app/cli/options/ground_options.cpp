@@ -7,7 +7,7 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kGroup = "Ground";
+constexpr const char* kGroundGroup = "Ground";
 
 /// "NX,NY,TYPE[,ENDIAN]".
 RawLayout parseGroundLayout(const std::string& text, const std::string& option) {
@@ -30,10 +30,10 @@ void GroundOptions::add(CLI::App& app) {
         },
         "a height field under the volume, over its whole box along x and y: a volume file of one layer, or "
         "sample:hurricane/ground; none: not that of the session",
-        kGroup);
+        kGroundGroup);
     addValue(app, "--ground-raw", "NX,NY,TYPE[,ENDIAN]", raw, parseGroundLayout,
-             "the file of the ground is headerless, see --raw", kGroup);
-    given.add(app, kGroup);
+             "the file of the ground is headerless, see --raw", kGroundGroup);
+    given.add(app, kGroundGroup);
 }
 
 void GroundOptions::applyTo(SceneInputs& inputs) const {

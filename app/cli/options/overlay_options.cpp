@@ -7,7 +7,7 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kGroup = "Overlay";
+constexpr const char* kOverlayGroup = "Overlay";
 
 } // namespace
 
@@ -20,12 +20,12 @@ void OverlayOptions::add(CLI::App& app) {
         },
         "a second volume over the first, as a t-map over its anatomy: a volume file or sample:NAME; none: not that of "
         "the session",
-        kGroup);
+        kOverlayGroup);
     addValue(app, "--overlay-tf", "TF|none", tf, anyText,
              "its own transfer function, as --tf takes it, in the place of threshold, top and colours; none: not that "
              "of the session",
-             kGroup);
-    given.add(app, kGroup);
+             kOverlayGroup);
+    given.add(app, kOverlayGroup);
 }
 
 void OverlayOptions::applyTo(SceneInputs& inputs) const {

@@ -6,7 +6,7 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kGroup = "Slice";
+constexpr const char* kSliceGroup = "Slice";
 
 /// "x:P", P in [0,1].
 SliceOptions::At parseSlice(const std::string& text, const std::string& option) {
@@ -25,12 +25,13 @@ void SliceOptions::add(CLI::App& app) {
         "a plane of the grid in place of the view: perpendicular to its axis x, y or z, at the fraction P of the box "
         "from 0 to 1, in the colours of the transfer function over grey. Of a patient as radiologists are used to: "
         "anterior or superior up, left at the right, in sagittal slices anterior at the left",
-        kGroup);
+        kSliceGroup);
     addValue(app, "--window", "LO,HI", window, parseRange,
-             "values that are black and white in a slice (default: the session's, else the intensity range)", kGroup);
-    given.add(app, kGroup);
+             "values that are black and white in a slice (default: the session's, else the intensity range)",
+             kSliceGroup);
+    given.add(app, kSliceGroup);
     app.add_flag("--nearest", nearest, "each pixel of a slice has the value of the nearest voxel (default: linear)")
-        ->group(kGroup);
+        ->group(kSliceGroup);
 }
 
 const char* SliceOptions::lookOfData() const {

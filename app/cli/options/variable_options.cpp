@@ -12,7 +12,7 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kGroup = "Variables";
+constexpr const char* kVariableGroup = "Variables";
 constexpr const char* kHsb = "--hsb";
 constexpr const char* kFeatures = "--features-of";
 constexpr const char* kHsbForm = "give alpha=, saturation=, brightness=, hue=, hue-from=, hue-to=, a=, b= with commas "
@@ -95,20 +95,20 @@ void VariableOptions::add(CLI::App& app) {
                 "another variable beside VOLUME, which is x: a file or series like VOLUME (--raw, --spacing, --axes "
                 "and --missing are of all), or made of another one: gradient:NAME, volatility:NAME:FRAMES, "
                 "difference:NAME:FRAME; repeatable",
-                kGroup);
+                kVariableGroup);
     addValue(
         app, kHsb, "CHANNELS", hsb, anyText,
         "colours by variables in place of the transfer function's: alpha=, saturation=, brightness=, hue= (a variable, "
         "of hue degrees too), hue-from=, hue-to= (degrees), a=, b= (scales of saturation and darkness, default auto) "
         "with commas between; auto: volatility of 10 frames and the second variable; off",
-        kGroup);
+        kVariableGroup);
     addValue(
         app, kFeatures, "VARIABLE", features, anyText,
         "the variable whose intensities the transfer function and its features are of, and that drives opacity: a "
         "name, "
         "or gradient, volatility:FRAMES, difference:FRAME of VOLUME (gradient:NAME and so on of another one); figures, "
         "targets and searches, --tf and --range are of it (default: VOLUME, or the session's)",
-        kGroup);
+        kVariableGroup);
 }
 
 void VariableOptions::applyTo(SceneInputs& inputs) const {

@@ -13,7 +13,7 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* kGroup = "Volume";
+constexpr const char* kVolumeGroup = "Volume";
 
 /// "A:B[:STEP]", both ends included; A or B may be left out.
 FrameRange parseFrames(const std::string& text, const std::string& option) {
@@ -46,30 +46,31 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     app.add_flag_callback(
            "--allow-outside", [] { allowOutsideFiles(); },
            "headers may name data files outside their own folder: for files that you trust")
-        ->group(kGroup);
+        ->group(kVolumeGroup);
     addValue(app, "--frames", "A:B[:STEP]", frames, parseFrames,
-             "only these frames of a series, from 0, B included; A or B may be left out", kGroup);
+             "only these frames of a series, from 0, B included; A or B may be left out", kVolumeGroup);
     addValue(app, "--frame", "N", frame, wholeFrom(0, std::numeric_limits<int>::max()),
-             "the frame to work on, from 0, of those that --frames selects (default: the session's, else 0)", kGroup);
+             "the frame to work on, from 0, of those that --frames selects (default: the session's, else 0)",
+             kVolumeGroup);
     addValue(app, "--array", "NAME", array, anyText,
-             "array of a file with several (default: its active scalars, else the largest or the first)", kGroup);
+             "array of a file with several (default: its active scalars, else the largest or the first)", kVolumeGroup);
     addValue(app, "--series", "NAME", array, anyText,
              "series of a folder of DICOM files: its name, number or UID (default: the one with the most slices); "
              "or image of an OME-TIFF: its name, or its number from 1 (default: the first one)",
-             kGroup);
+             kVolumeGroup);
     addValue(
         app, "--cache", "MIB",
         [this](const std::string& text, const std::string& option) {
             cacheBytes =
                 std::max<std::size_t>(1, static_cast<std::size_t>(parseRealAbove(text, option, 0, 1e9) * 1048576));
         },
-        "memory for frames of a series, in MiB (default: a quarter of what is free, at most 2048)", kGroup);
+        "memory for frames of a series, in MiB (default: a quarter of what is free, at most 2048)", kVolumeGroup);
     addValue(
         app, "--raw", "NX,NY,NZ,TYPE[,ENDIAN]",
         [this](const std::string& text, const std::string& option) {
             raw = atOption(option + " " + text, [&] { return parseRawLayout(text); });
         },
-        "the file is headerless; TYPE is u8 i8 u16 i16 u32 i32 f32 f64, ENDIAN little (default) or big", kGroup);
+        "the file is headerless; TYPE is u8 i8 u16 i16 u32 i32 f32 f64, ENDIAN little (default) or big", kVolumeGroup);
     addValue(
         app, "--spacing", "SX,SY,SZ[,UNIT]",
         [this](const std::string& text, const std::string& option) {
@@ -77,33 +78,34 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
         },
         "distances between voxels, whatever the file says, in its unit of length or in UNIT, such as nm, um or mm "
         "(default: the file's; 1,1,1 for --raw data)",
-        kGroup);
+        kVolumeGroup);
     addValue(app, "--skip", "BYTES", skipBytes, wholeFrom<std::uint64_t>(0, std::numeric_limits<long long>::max()),
-             "bytes before the --raw data", kGroup);
+             "bytes before the --raw data", kVolumeGroup);
     addValue(app, "--missing", "VALUE", missing, parseReal,
-             "voxels of this value are invalid: never drawn, never counted", kGroup);
+             "voxels of this value are invalid: never drawn, never counted", kVolumeGroup);
     addValue(app, "--range", "LO,HI", range, parseRange,
              "the values of intensity 0 and 1 (default: those of the TF file, else of the session, else smallest and "
              "largest value)",
-             kGroup);
+             kVolumeGroup);
     addValue(app, "--component", "N", component, wholeFrom(0, 1'000'000), "component of a multi-component file, from 0",
-             kGroup);
+             kVolumeGroup);
     addValue(
         app, "--axes", "IJK",
         [this](const std::string& text, const std::string& option) {
             axes = atOption(option + " " + text, [&] { return parseGridAxes(text); });
         },
         "where the axes i, j, k of the data point, whatever the file says: LPS (letters of L R A P S I), or +x-y+z",
-        kGroup);
+        kVolumeGroup);
     addValue(app, size == SizeIs::Sample ? "--size,--sample-size" : "--sample-size", "N", sampleSize, parseSampleSize,
-             "voxels along the longest axis of a sample", kGroup);
+             "voxels along the longest axis of a sample", kVolumeGroup);
     addValue(app, "--seed", "N", seed, wholeFrom<std::uint32_t>(0, std::numeric_limits<std::uint32_t>::max()),
-             "seed of a sample's noise (default 1)", kGroup);
+             "seed of a sample's noise (default 1)", kVolumeGroup);
     addValue(app, "--downsample", "N", downsample, wholeFrom(1, 65536),
-             "each voxel is the mean of N along each axis (default: 1, or the least that memory has room for)", kGroup);
+             "each voxel is the mean of N along each axis (default: 1, or the least that memory has room for)",
+             kVolumeGroup);
     if (size != SizeIs::Both && size != SizeIs::ImageWithRegion)
         addValue(app, "--region", "X0:X1,Y0:Y1,Z0:Z1", region, parseVoxelRegion,
-                 "only these voxels of the data, from the first to the one before the second", kGroup);
+                 "only these voxels of the data, from the first to the one before the second", kVolumeGroup);
 }
 
 void VolumeOptions::addSizeOfBoth(CLI::App& app, std::function<void(const ImageSize&)> setImage,

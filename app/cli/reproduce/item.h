@@ -36,6 +36,10 @@ struct Item {
     Reproduction unmade() const;
 };
 
+/// What items of several chapters need and exercise.
+inline const DataNeed kKnee{"CT-Knee (379×229×305)", "knee"};
+inline const ReproducedEquation kVws{"4.12", "src/saliency/vws.cpp"}, kObjective{"5.1", "src/optimize/objective.cpp"};
+
 /// In the order of the thesis: those of each chapter, and all.
 std::vector<Item> itemsOfChapter3();
 std::vector<Item> itemsOfChapter4();

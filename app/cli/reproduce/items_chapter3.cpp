@@ -10,8 +10,7 @@ namespace pellucid::cli {
 
 namespace {
 
-const DataNeed kKnee{"CT-Knee (379×229×305)", "knee"},
-    kHead{"VisMale (128×256×256)", "knee", "cranium_ct/cranium_ct.nrrd", false},
+const DataNeed kHead{"VisMale (128×256×256)", "knee", "cranium_ct/cranium_ct.nrrd", false},
     kVortex{"turbulent vortex (128×128×128, 100 steps)", "vortex"},
     kVortexStep{"turbulent vortex (128×128×128, step 1)", "vortex", "vortex/vorts1.mhd"};
 const std::string kView = "30,20";
@@ -58,8 +57,6 @@ ReproducedTable tableOf(const Tissues& tissues) {
     }
     return table;
 }
-
-std::string fromTo(double before, double after) { return figureText(before) + " → " + figureText(after); }
 
 /// §3.5.1 of either start.
 void sayWhatIsExposed(Desk& desk, const Tissues& tissues) {

@@ -19,8 +19,7 @@ const ReproducedEquation kFeature{"4.1", "src/tf/feature.h"}, kColor{"4.2", "src
     kVisibilityField{"4.5", "src/render/cpu/sweep_kernel.inl"}, kAverage{"4.6", "src/saliency/appearance.h"},
     kWeights{"4.7", "src/saliency/appearance.h"}, kSaliency{"4.8", "src/saliency/saliency_field.cpp"},
     kVoxelVws{"4.9", "src/optimize/fields.cpp"}, kVwsField{"4.10", "src/optimize/fields.cpp"},
-    kFeatureField{"4.11", "src/optimize/fields.cpp"}, kVws{"4.12", "src/saliency/vws.cpp"},
-    kVwsOfBoth{"4.13", "src/saliency/vws.cpp"};
+    kFeatureField{"4.11", "src/optimize/fields.cpp"}, kVwsOfBoth{"4.13", "src/saliency/vws.cpp"};
 
 // --- Three disks ---
 
@@ -49,11 +48,12 @@ ReproducedTable sharesOf(const std::string& caption, const std::vector<FeatureFi
 void fieldsOfDisks(Desk& desk) {
     const Source disks = desk.data();
     const std::string tf = desk.tf("disks");
-    struct Side {
+    struct SideView {
         std::string name, words, view;
         std::size_t nearest;
     };
-    for (const Side& side : {Side{"left", "on the left", kFromLeft, 0}, Side{"right", "on the right", kFromRight, 2}}) {
+    for (const SideView& side :
+         {SideView{"left", "on the left", kFromLeft, 0}, SideView{"right", "on the right", kFromRight, 2}}) {
         const Words words = disks.words + Words{"--tf", tf, "--view", side.view};
         desk.render(side.name + ".png", "4.1", "the disks from a viewpoint " + side.words, words);
         desk.render(side.name + "_visibility.png", "4.1", "their visibility field, from the same viewpoint",
@@ -204,11 +204,11 @@ void sayHowFarSaturationLeads(Desk& desk, const std::vector<FeatureFigures>& fea
 void barsOfDisks(Desk& desk) {
     const Source disks = desk.data();
     const std::string tf = desk.tf("disks_translucent");
-    struct Side {
+    struct SideView {
         std::string name, view, figure;
         std::size_t nearest;
     };
-    for (const Side& side : {Side{"left", "-90,0", "4.5", 0}, Side{"right", "90,0", "4.6", 2}}) {
+    for (const SideView& side : {SideView{"left", "-90,0", "4.5", 0}, SideView{"right", "90,0", "4.6", 2}}) {
         const Words words = disks.words + Words{"--tf", tf, "--view", side.view};
         const std::string bars = desk.file(side.name + "_bars.svg");
         desk.render(side.name + ".png", side.figure, "the disks, translucent, from the " + side.name, words);

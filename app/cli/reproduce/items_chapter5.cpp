@@ -14,11 +14,6 @@ namespace pellucid::cli {
 
 namespace {
 
-const ReproducedEquation kObjective{"5.1", "src/optimize/objective.cpp"};
-const ReproducedEquation kVws{"4.12", "src/saliency/vws.cpp"};
-
-std::string fromTo(double before, double after) { return figureText(before) + " → " + figureText(after); }
-
 // ---- The parameter space ------------------------------------------------------------------------------------------
 
 /// VWS over the opacities of three features: the table that `space --csv` writes, f1 running fastest.

@@ -12,8 +12,6 @@ namespace pellucid::cli {
 namespace {
 
 const DataNeed kVortexSeries{"vortex (128×128×128, 100 time steps)", "vortex"};
-const DataNeed kKnee{"CT-Knee (379×229×305)", "knee"};
-const ReproducedEquation kObjective{"5.1", "src/optimize/objective.cpp"};
 
 // ---- Over time ----------------------------------------------------------------------------------------------------
 

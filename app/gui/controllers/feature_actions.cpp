@@ -17,8 +17,8 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kNewWidth = 1.0 / 8;            // of a shape that is added
-constexpr QSize kStrip{84, 14}, kSwatch{16, 16}; // of a map: beside its name; in a menu of the bar
+constexpr double kNewWidth = 1.0 / 8;                // of a shape that is added
+constexpr QSize kStrip{84, 14}, kSwatchSize{16, 16}; // of a map: beside its name; in a menu of the bar
 
 struct ShapeText {
     ShapeKind kind;
@@ -218,7 +218,7 @@ void FeatureActions::addColorActions() {
             map.visionSafe ? QObject::tr("Colours by value; colour-blind eyes can tell them apart too. Opacities stay")
                            : QObject::tr("Colours by value; opacities stay"),
             apply);
-        action->setIcon(colorStrip(map, kSwatch));
+        action->setIcon(colorStrip(map, kSwatchSize));
         action->setIconVisibleInMenu(true);
         m_maps << action;
     }

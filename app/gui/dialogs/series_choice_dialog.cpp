@@ -16,11 +16,11 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kPictureSize = 96;
+constexpr int kFramePicture = 96;
 
 /// What a list shows before the picture is there, and where it cannot be read.
 QPixmap emptyPicture(const QWidget& widget) {
-    return swatchOf(widget.palette().color(QPalette::AlternateBase), kPictureSize, kPictureSize);
+    return swatchOf(widget.palette().color(QPalette::AlternateBase), kFramePicture, kFramePicture);
 }
 
 } // namespace
@@ -33,14 +33,14 @@ SeriesChoiceDialog::SeriesChoiceDialog(const VolumeSource& source, const FileCon
           [this](const Asked& asked, QImage& image) {
               if (image.isNull()) return;
               m_list->item(asked.row)->setIcon(QPixmap::fromImage(
-                  image.scaled(kPictureSize, kPictureSize, Qt::KeepAspectRatio, Qt::SmoothTransformation)));
+                  image.scaled(kFramePicture, kFramePicture, Qt::KeepAspectRatio, Qt::SmoothTransformation)));
           },
           WhenBusy::Queue) {
     setObjectName("seriesChoiceDialog");
     setWindowTitle(tr("Choose a volume"));
     auto* what = wrappedLabel("seriesWhat", this);
     what->setText(tr("%L1 volumes were found. Which one do you want to open?").arg(m_names.size()));
-    m_list->setIconSize({kPictureSize, kPictureSize});
+    m_list->setIconSize({kFramePicture, kFramePicture});
     m_list->setMinimumSize(460, 360);
     m_list->setSpacing(3);
     for (std::size_t i = 0; i < m_names.size(); ++i) {

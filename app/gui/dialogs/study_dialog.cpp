@@ -19,7 +19,7 @@
 namespace pellucid::gui {
 namespace {
 
-enum Column { kId, kFeature, kLabel, kPractice, kColumns };
+enum Column { kId, kFeature, kLabel, kPractice, kStudyColumns };
 
 /// Texts of several lines.
 bool isLong(const Setting& setting) {
@@ -108,7 +108,7 @@ QWidget* StudyDialog::controlOf(const Setting& setting) {
 }
 
 QWidget* StudyDialog::makeStimuli() {
-    m_stimuli->setColumnCount(kColumns);
+    m_stimuli->setColumnCount(kStudyColumns);
     elideInTheMiddle(*m_stimuli);
     m_stimuli->setHorizontalHeaderLabels({tr("Stimulus"), tr("Feature"), tr("Word"), tr("Practice")});
     m_stimuli->horizontalHeader()->setSectionResizeMode(kLabel, QHeaderView::Stretch);

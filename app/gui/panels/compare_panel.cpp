@@ -21,7 +21,7 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kMostSteps = 20; // of the history, that are offered
+constexpr int kMostOffered = 20; // of the history, that are offered
 
 class ComparePanel : public QWidget {
 public:
@@ -154,7 +154,7 @@ void ComparePanel::fillChoices(QMenu& menu) {
 void ComparePanel::addSteps(QMenu& menu) {
     const SessionStore& store = m_services.store();
     const int last = store.doneCount() - 1;
-    for (int step = last; step >= 0 && step > last - kMostSteps; --step)
+    for (int step = last; step >= 0 && step > last - kMostOffered; --step)
         menu.addAction(tr("Before: %1").arg(store.textOf(step)), this,
                        [this, step] { m_comparing.compareWithStep(step); });
     menu.setEnabled(last >= 0);

@@ -17,7 +17,7 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRow = 22, kStrip = 6;
+constexpr int kPlotRow = 22, kStrip = 6;
 
 QString unitOf(const Scene& scene) { return QString::fromUtf8(lengthUnit(scene.volume->geometry())); }
 
@@ -192,8 +192,8 @@ std::vector<ProbeShares::Row> ProbeShares::rows() const {
     return rows;
 }
 
-QRect ProbeShares::rowRect(int row) const { return {0, row * kRow, width(), kRow}; }
-QSize ProbeShares::sizeHint() const { return {300, kRow * std::max(1, static_cast<int>(rows().size()))}; }
+QRect ProbeShares::rowRect(int row) const { return {0, row * kPlotRow, width(), kPlotRow}; }
+QSize ProbeShares::sizeHint() const { return {300, kPlotRow * std::max(1, static_cast<int>(rows().size()))}; }
 
 void ProbeShares::paintEvent(QPaintEvent*) {
     QPainter painter(this);
@@ -207,12 +207,13 @@ void ProbeShares::paintEvent(QPaintEvent*) {
             painter.fillRect(box, translucent(palette().color(QPalette::Highlight), 0.3));
         QColor color = palette().color(QPalette::Mid);
         if (row.feature >= 0) color = colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(row.feature)].color);
-        painter.fillRect(QRect(box.left() + 4, box.top() + 5, 12, kRow - 10), color);
+        painter.fillRect(QRect(box.left() + 4, box.top() + 5, 12, kPlotRow - 10), color);
         const int nameWidth = box.width() * 2 / 5 - 22;
         painter.setPen(palette().color(QPalette::Text));
-        painter.drawText(QRect(box.left() + 22, box.top(), nameWidth, kRow), Qt::AlignLeft | Qt::AlignVCenter,
+        painter.drawText(QRect(box.left() + 22, box.top(), nameWidth, kPlotRow), Qt::AlignLeft | Qt::AlignVCenter,
                          fontMetrics().elidedText(nameOf(m_probe, row.feature), Qt::ElideRight, nameWidth));
-        const QRectF bar(box.left() + 26 + nameWidth, box.top() + 6, box.width() - 30 - nameWidth - percent, kRow - 12);
+        const QRectF bar(box.left() + 26 + nameWidth, box.top() + 6, box.width() - 30 - nameWidth - percent,
+                         kPlotRow - 12);
         painter.fillRect(bar, palette().color(QPalette::Base));
         painter.fillRect(QRectF(bar.left(), bar.top(), bar.width() * std::min(1.0, row.share), bar.height()), color);
         painter.drawText(box.adjusted(0, 0, -4, 0), Qt::AlignRight | Qt::AlignVCenter, row.text);
@@ -226,7 +227,7 @@ QString ProbeShares::spokenValue() const {
 }
 
 int ProbeShares::rowAt(const QPoint& point) const {
-    const int row = point.y() / kRow;
+    const int row = point.y() / kPlotRow;
     return point.y() >= 0 && row < static_cast<int>(rows().size()) ? row : -1;
 }
 

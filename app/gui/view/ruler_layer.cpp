@@ -12,9 +12,9 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kReach = 8;    // pixels from a handle at which it is taken
-constexpr double kRadius = 4.5; // of a handle
-constexpr int kHintTop = 14;    // of the hint, below the letter at the upper edge
+constexpr double kReach = 8;          // pixels from a handle at which it is taken
+constexpr double kHandleRadius = 4.5; // of a handle
+constexpr int kHintTop = 14;          // of the hint, below the letter at the upper edge
 
 /// What to do next, in the middle above.
 void paintHint(QPainter& painter, const QString& text, double width, double top) {
@@ -40,7 +40,7 @@ void RulerHand::paint(QPainter& painter, const std::vector<Mark>& marks,
         if (handle.number != m_rulers.selected() && !isActive) continue;
         painter.setPen(QPen(QColor(0, 0, 0, 170), 2.5));
         painter.setBrush(isActive ? theme::kMarkAccent.lighter(130) : theme::kMarkAccent);
-        const double radius = isActive ? kRadius + 1.5 : kRadius;
+        const double radius = isActive ? kHandleRadius + 1.5 : kHandleRadius;
         painter.drawEllipse(QPointF(handle.at.x, handle.at.y), radius, radius);
         painter.setPen(QPen(Qt::white, 1.2));
         painter.setBrush(Qt::NoBrush);

@@ -26,7 +26,7 @@ namespace pellucid::gui {
 namespace {
 
 constexpr auto kSeenKey = "tourSeen";
-constexpr int kWidth = 330, kGap = 14, kMargin = 8, kOutline = 3; // logical pixels
+constexpr int kCardWidth = 330, kGap = 14, kCardMargin = 8, kOutline = 3; // logical pixels
 
 struct Step {
     const char *title, *text;
@@ -97,7 +97,7 @@ QRect shownPartOf(const QWidget& widget, const QWidget& window) {
 /// Below a low target such as a button, else at its left, else where there is room; over the lower part of one that has
 /// the room for it, as the picture.
 QPoint placeBeside(const QRect& target, const QSize& card, const QRect& window) {
-    const QRect room = window.adjusted(kMargin, kMargin, -kMargin, -kMargin);
+    const QRect room = window.adjusted(kCardMargin, kCardMargin, -kCardMargin, -kCardMargin);
     const auto within = [](int wanted, int lo, int hi) { return std::clamp(wanted, lo, std::max(lo, hi)); };
     const int x = within(target.center().x() - card.width() / 2, room.left(), room.right() - card.width());
     const int y = within(target.center().y() - card.height() / 2, room.top(), room.bottom() - card.height());
@@ -124,7 +124,7 @@ Tour::Tour(QMainWindow& window, Services& services)
       m_focusBefore(QApplication::focusWidget()) {
     setObjectName("tour");
     setAutoFillBackground(true);
-    setFixedWidth(kWidth);
+    setFixedWidth(kCardWidth);
     makeBold(*m_title);
     for (QPushButton* button : {m_leave, m_back, m_next}) button->setAutoDefault(false);
     connect(m_leave, &QPushButton::clicked, this, &Tour::leave);
@@ -216,8 +216,8 @@ bool Tour::eventFilter(QObject* watched, QEvent* event) {
 }
 
 void Tour::place() {
-    const int height = layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(kWidth) : sizeHint().height();
-    resize(kWidth, height);
+    const int height = layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(kCardWidth) : sizeHint().height();
+    resize(kCardWidth, height);
     const bool isSeen = m_target && m_target->isVisible();
     const QRect target = isSeen ? shownPartOf(*m_target, m_window) : QRect(m_window.rect().center(), QSize(1, 1));
     m_mark->setGeometry(target.adjusted(-kOutline, -kOutline, kOutline, kOutline) & m_window.rect());

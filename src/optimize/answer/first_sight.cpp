@@ -59,7 +59,7 @@ std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double
 namespace {
 
 constexpr double kLeast = 1e-4, kMost = 0.98; // of a peak
-constexpr double kLeastWeight = 0.2;          // what a feature of no importance counts, to 1.2 of the most important
+constexpr double kUnimportant = 0.2;          // what a feature of no importance counts, to 1.2 of the most important
 
 /// `tf` with other peaks. Where two features meet without a step it stays without one, at the lower of the two
 /// opacities: withFeatureOpacities() alone would put one there.
@@ -130,7 +130,7 @@ private:
         for (std::size_t f = 0; f < m_wanted.size(); ++f)
             if (m_wanted[f] > 0) {
                 const double l = lack(a, f);
-                const double weight = kLeastWeight + m_importance[f];
+                const double weight = kUnimportant + m_importance[f];
                 sum += weight * l * l;
                 weights += weight;
                 ++seen;

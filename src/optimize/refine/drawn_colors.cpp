@@ -12,7 +12,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr std::size_t kBins = 1024; ///< of intensity
+constexpr std::size_t kColorBins = 1024; ///< of intensity
 
 struct BinColors {
     std::array<std::uint64_t, 3> sum{}; ///< of 8-bit channels: whole numbers, in any order the same
@@ -21,19 +21,19 @@ struct BinColors {
 
 std::vector<BinColors> colorsByIntensity(const Volume& volume, const VoxelColors& colors) {
     constexpr std::size_t kPieces = 8;
-    std::vector<std::vector<BinColors>> pieces(kPieces, std::vector<BinColors>(kBins));
+    std::vector<std::vector<BinColors>> pieces(kPieces, std::vector<BinColors>(kColorBins));
     parallelFor(kPieces, [&](std::size_t piece) {
         const std::size_t end = (piece + 1) * volume.size() / kPieces;
         for (std::size_t i = piece * volume.size() / kPieces; i < end; ++i) {
             const double s = volume.intensity(i);
             if (std::isnan(s)) continue;
-            BinColors& bin = pieces[piece][std::min(static_cast<std::size_t>(s * kBins), kBins - 1)];
+            BinColors& bin = pieces[piece][std::min(static_cast<std::size_t>(s * kColorBins), kColorBins - 1)];
             for (std::size_t c = 0; c < 3; ++c) bin.sum[c] += colors.rgba[i] >> (8 * c) & 255u;
             ++bin.count;
         }
     });
     for (std::size_t piece = 1; piece < kPieces; ++piece)
-        for (std::size_t b = 0; b < kBins; ++b) {
+        for (std::size_t b = 0; b < kColorBins; ++b) {
             for (std::size_t c = 0; c < 3; ++c) pieces[0][b].sum[c] += pieces[piece][b].sum[c];
             pieces[0][b].count += pieces[piece][b].count;
         }
@@ -55,9 +55,9 @@ TransferFunction withDrawnColors(const TransferFunction& tf, const Volume& volum
         for (std::size_t c = 0; c < 3; ++c) means[point].sum[c] += weight * static_cast<double>(bin.sum[c]) / 255;
         means[point].weight += weight * static_cast<double>(bin.count);
     };
-    for (std::size_t b = 0; b < kBins; ++b) {
+    for (std::size_t b = 0; b < kColorBins; ++b) {
         if (bins[b].count == 0) continue;
-        const double s = (static_cast<double>(b) + 0.5) / kBins;
+        const double s = (static_cast<double>(b) + 0.5) / kColorBins;
         // The first point beyond s; of several in one place the first from below, the last from above.
         const auto next = std::ranges::find_if(
             tf.points, [&](double x) { return x > s; }, &ControlPoint::x);
