@@ -1,8 +1,8 @@
 # pellucid_compile_together(<target> <groups>)
 # With PELLUCID_UNITY the files of a target are compiled some at a time, in so many groups: headers are read once for
-# each, which makes a build from nothing two to three times as fast. Names of file-local things have to differ within a
-# group, then. The name of a file decides on its group: a new file moves no other one.
-# Call it in the target's own folder, after flags of single files have been set: those files stay by themselves.
+# each, and a build from nothing takes about half as long. Names of file-local things have to differ within a group, then.
+# The name of a file decides on its group: a new file moves no other one. Files with flags of their own stay by
+# themselves. Call it in the target's own folder.
 function(pellucid_compile_together target groups)
     if(NOT PELLUCID_UNITY)
         return()
