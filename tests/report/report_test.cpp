@@ -17,6 +17,7 @@
 #include "session/caption.h"
 #include "session/session_json.h"
 #include "support/temp_folder.h"
+#include "support/text_parts.h"
 #include "tf/shown_tf.h"
 
 using namespace pellucid;
@@ -43,12 +44,6 @@ Report smallReport(const std::string& hostile = "skin") {
     report.command = "pellucid-cli optimize '" + hostile + "'";
     report.program = "Pellucid";
     return report;
-}
-
-std::size_t countOf(const std::string& text, const std::string& part) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-    return count;
 }
 
 std::string textOf(const std::filesystem::path& path) {
@@ -108,7 +103,7 @@ TEST_CASE("a report fetches nothing", "[report]") {
         CHECK(html.find(word) == std::string::npos);
     }
     // The only addresses are names of XML.
-    CHECK(countOf(html, "http") == countOf(html, "http://www.w3.org/2000/svg"));
+    CHECK(timesIn(html, "http") == timesIn(html, "http://www.w3.org/2000/svg"));
 }
 
 TEST_CASE("no text of a report is taken for markup", "[report]") {
@@ -118,7 +113,7 @@ TEST_CASE("no text of a report is taken for markup", "[report]") {
     CHECK(html.find("<img src=x") == std::string::npos);
     CHECK(html.find(hostile) == std::string::npos);
     // Title twice, table, setting, remark, command, and the legends of curves and bars.
-    CHECK(countOf(html, "&quot;&#39;&gt;&lt;img src=x onerror=alert(1)&gt;&lt;script&gt;&amp;") >= 6);
+    CHECK(timesIn(html, "&quot;&#39;&gt;&lt;img src=x onerror=alert(1)&gt;&lt;script&gt;&amp;") >= 6);
 }
 
 TEST_CASE("the threshold of §5.4 is checked on the states that lie below it", "[report]") {

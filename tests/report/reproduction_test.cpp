@@ -9,8 +9,10 @@
 
 #include "base/error.h"
 #include "report/reproduction_page.h"
+#include "support/text_parts.h"
 
 using namespace pellucid;
+using pellucid::test::contains;
 
 namespace {
 
@@ -32,8 +34,6 @@ Reproduction item() {
     r.seconds = 61;
     return r;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 } // namespace
 
@@ -72,31 +72,31 @@ TEST_CASE("items are called by all that they show", "[report][reproduce]") {
 TEST_CASE("the page has contents, statements and numbers, and escapes every text", "[report][reproduce]") {
     const std::vector<Reproduction> items{item()};
     const std::string html = htmlOf({items, "Pellucid <1>", "pellucid-cli reproduce", 75});
-    CHECK(has(html, "<a href=\"#4.5\">Figures 4.5 and 4.6</a>"));
-    CHECK(has(html, "Bars &lt;of&gt; disks"));
-    CHECK(has(html, "The thesis shows bars &amp; disks."));
-    CHECK(has(html, "src=\"4.5/left.png\""));
-    CHECK(has(html, "from &quot;the left&quot;"));
-    CHECK(has(html, "A &lt; B."));
-    CHECK(has(html, "<b>Does not hold</b>: 0.5 &gt; 0.2"));
-    CHECK(has(html, "Ours is &lt;a sample&gt;."));
-    CHECK(has(html, "measure sample:disks &gt; 4.5/left.json"));
-    CHECK(has(html, "Pellucid &lt;1&gt;"));
-    CHECK(has(html, "1 of 2 statements of its text hold"));
-    CHECK(has(html, "<td>1 of 2</td>"));
-    CHECK(has(html, "1 min 15 s"));
+    CHECK(contains(html, "<a href=\"#4.5\">Figures 4.5 and 4.6</a>"));
+    CHECK(contains(html, "Bars &lt;of&gt; disks"));
+    CHECK(contains(html, "The thesis shows bars &amp; disks."));
+    CHECK(contains(html, "src=\"4.5/left.png\""));
+    CHECK(contains(html, "from &quot;the left&quot;"));
+    CHECK(contains(html, "A &lt; B."));
+    CHECK(contains(html, "<b>Does not hold</b>: 0.5 &gt; 0.2"));
+    CHECK(contains(html, "Ours is &lt;a sample&gt;."));
+    CHECK(contains(html, "measure sample:disks &gt; 4.5/left.json"));
+    CHECK(contains(html, "Pellucid &lt;1&gt;"));
+    CHECK(contains(html, "1 of 2 statements of its text hold"));
+    CHECK(contains(html, "<td>1 of 2</td>"));
+    CHECK(contains(html, "1 min 15 s"));
     // 3 moves where the thesis has 2; half a second where it has two: a quarter.
-    CHECK(has(html, "<td>3 moves</td><td>2 moves</td><td>+1</td>"));
-    CHECK(has(html, "<td>× 0.25</td>"));
+    CHECK(contains(html, "<td>3 moves</td><td>2 moves</td><td>+1</td>"));
+    CHECK(contains(html, "<td>× 0.25</td>"));
 }
 
 TEST_CASE("an item that failed says why, on the page and in the index", "[report][reproduce]") {
     Reproduction r = item();
     r.error = "no <file>";
     const std::vector<Reproduction> items{r};
-    CHECK(has(htmlOf({items, "", "", 0}), "It failed: no &lt;file&gt;"));
-    CHECK(has(htmlOf({items, "", "", 0}), "1 item failed"));
-    CHECK(has(indexOf(items), "It failed: no \\<file\\>"));
+    CHECK(contains(htmlOf({items, "", "", 0}), "It failed: no &lt;file&gt;"));
+    CHECK(contains(htmlOf({items, "", "", 0}), "1 item failed"));
+    CHECK(contains(indexOf(items), "It failed: no \\<file\\>"));
 }
 
 TEST_CASE("the index leads from equations to files, commands and results, without times", "[report][reproduce]") {
@@ -108,12 +108,12 @@ TEST_CASE("the index leads from equations to files, commands and results, withou
     CHECK(first != std::string::npos);
     CHECK(second != std::string::npos);
     CHECK(first < second); // by number, not by letters
-    CHECK(has(text, "\n## Figures 4.5 and 4.6\n"));
-    CHECK(has(text, "\n    pellucid-cli measure sample:disks > 4.5/left.json\n"));
-    CHECK(has(text, "| first\\_disk\\| | 0.5 |"));
-    CHECK(has(text, "**Does not hold**: 0.5 \\> 0.2."));
-    CHECK_FALSE(has(text, "time"));
-    CHECK_FALSE(has(text, "left.png"));
+    CHECK(contains(text, "\n## Figures 4.5 and 4.6\n"));
+    CHECK(contains(text, "\n    pellucid-cli measure sample:disks > 4.5/left.json\n"));
+    CHECK(contains(text, "| first\\_disk\\| | 0.5 |"));
+    CHECK(contains(text, "**Does not hold**: 0.5 \\> 0.2."));
+    CHECK_FALSE(contains(text, "time"));
+    CHECK_FALSE(contains(text, "left.png"));
 
     Reproduction later = item();
     later.seconds = 99;

@@ -11,10 +11,13 @@
 #include "study/participation.h"
 #include "study/simulation.h"
 #include "support/study_cases.h"
+#include "support/text_parts.h"
 
 using namespace pellucid;
+using pellucid::test::contains;
 using pellucid::test::studyOf;
 using pellucid::test::TempFolder;
+using pellucid::test::timesIn;
 using pellucid::test::writePrepared;
 
 namespace {
@@ -48,14 +51,6 @@ Participant someone(const std::string& id, const std::vector<int>& scores, int a
 StudyAnalysis smallAnalysis() {
     return analyzeStudy(smallStudy(), {someone("p1", {4, 1, 2}, 5), someone("p2", {4, 2, 3}, 4)});
 }
-
-std::size_t timesIn(const std::string& text, const std::string& part) {
-    std::size_t count = 0;
-    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
-    return count;
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 } // namespace
 

@@ -12,6 +12,7 @@
 #include "session/workspace.h"
 #include "share/page_text.h"
 #include "support/temp_folder.h"
+#include "support/text_parts.h"
 #include "tf/transfer_function.h"
 
 using namespace pellucid;
@@ -53,12 +54,6 @@ Page pageOf(const ShareTask& task) {
     page.text = readText(task.path);
     page.scene = json::parse(page.between("<script type=\"application/json\" id=\"scene\">", "</script>"));
     return page;
-}
-
-std::size_t countOf(const std::string& text, const std::string& part) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-    return count;
 }
 
 } // namespace
@@ -125,10 +120,10 @@ TEST_CASE("a title is text wherever it stands", "[share]") {
     const TempFolder folder;
     ShareSettings settings;
     settings.density = ShareDensity::Off;
-    const std::size_t scripts = countOf(pageOf(taskOf(sampleScene(), folder, settings)).text, "<script");
+    const std::size_t scripts = timesIn(pageOf(taskOf(sampleScene(), folder, settings)).text, "<script");
     settings.title = "</script><script>x()</script><img src=x onerror=y()>{{voxels}}\xe2\x80\xa8";
     const Page page = pageOf(taskOf(sampleScene(), folder, settings));
-    CHECK(countOf(page.text, "<script") == scripts);
+    CHECK(timesIn(page.text, "<script") == scripts);
     CHECK(page.text.find("x()</script>") == std::string::npos);
     CHECK(page.text.find("<img src=x") == std::string::npos);
     CHECK(page.between("<title>", "</title>").starts_with("&#60;/script&#62;&#60;script&#62;x()"));
