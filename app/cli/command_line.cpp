@@ -13,6 +13,7 @@ namespace pellucid::cli {
 
 namespace {
 
+std::string g_program = "pellucid-cli";
 std::vector<std::string> g_words;
 std::string g_line; // as commandLineOf() writes it
 
@@ -48,15 +49,17 @@ std::string shellQuoted(const std::string& word) {
 }
 
 std::string commandLineOf(std::span<const std::string> arguments) {
-    std::string line = "pellucid-cli";
+    std::string line = g_program;
     for (const std::string& word : arguments) line += " " + shellQuoted(word);
     return line;
 }
 
-void keepCommandLine(std::span<const std::string> arguments) {
+void keepCommandLine(const std::string& program, std::span<const std::string> arguments) {
+    g_program = program;
     g_words.assign(arguments.begin(), arguments.end());
     g_line = commandLineOf(arguments);
 }
+const std::string& programName() { return g_program; }
 const std::string& commandLine() { return g_line; }
 
 std::string pictureCommand(const std::string& option, const std::string& out) {

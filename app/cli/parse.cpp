@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/setting.h"
+#include "command_line.h"
 #include "output.h"
 #include "render/render_settings.h"
 
@@ -204,7 +205,7 @@ CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::str
 }
 
 UsageError isRequired(const std::string& what, const std::string& command) {
-    const std::string program = "pellucid-cli " + command;
+    const std::string program = programName() + " " + command;
     return {what + " is required", program, "see " + program + " --help"};
 }
 

@@ -219,7 +219,7 @@ Outcome runCommand(const Program& info, const CLI::App& program, const Command& 
 }
 
 Outcome parseAndRun(const Program& info, const std::vector<std::string>& arguments) {
-    keepCommandLine(arguments);
+    keepCommandLine(info.name, arguments);
     watchCallFiles();
     CLI::App program(info.purpose, info.name);
     program.set_version_flag("--version", info.name + " " + PELLUCID_VERSION, "print the version");

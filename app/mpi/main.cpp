@@ -2,7 +2,9 @@
 // have of a volume differs. Rank 0 alone says anything and writes files, but for those that all write together
 // (base/joint_file.h), and those of the frames that they divide.
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
+#include <string_view>
 
 #include "base/memory.h"
 #include "program.h"
@@ -61,6 +63,16 @@ void addTraffic(Outcome& outcome, MpiRanks& ranks, const Traffic& sent) {
     outcome.answer = jsonText(json);
 }
 
+/// Where srun has started several processes and MPI knows of no other one, each would do all of the work, and they
+/// would write the same files.
+void requireThatAllAreKnown(const MpiRanks& ranks) {
+    const char* const tasks = std::getenv("SLURM_STEP_NUM_TASKS");
+    const bool byLauncher = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr;
+    if (ranks.size() > 1 || byLauncher || tasks == nullptr || std::string_view(tasks) == "1") return;
+    throw Error("srun has started " + std::string(tasks) + " processes, but MPI has not brought them together", "srun",
+                "start them with srun --mpi=pmix or with mpirun");
+}
+
 /// Runs the command, and agrees with the other ranks on how that ended.
 Outcome runTogether(const Program& program, const std::vector<std::string>& arguments, MpiRanks& ranks) {
     Outcome outcome = runOnRanks(program, arguments, ranks);
@@ -96,6 +108,7 @@ int main(int argc, char** argv) {
     try {
         pellucid::MpiRanks ranks(argc, argv);
         program.shows = ranks.rank() == 0;
+        cli::requireThatAllAreKnown(ranks);
         const cli::Outcome outcome = cli::runTogether(program, {argv + 1, argv + argc}, ranks);
         return ranks.rank() == 0 ? cli::tell(program, outcome) : outcome.status;
     } catch (const pellucid::Error& e) {

@@ -43,13 +43,15 @@ std::unique_ptr<T> gpuElseCpu(MakeGl makeGl, MakeCpu makeCpu) {
 
 } // namespace
 
+void requireEngine(EngineChoice choice) {
+    if (ranksOfProcess() != nullptr && choice != EngineChoice::Auto && choice != EngineChoice::Cpu)
+        throw UsageError("ranks work with the cpu engine", "--engine", "leave it out, or use pellucid-cli");
+}
+
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality) {
-    if (Communicator* ranks = ranksOfProcess()) {
-        if (choice != EngineChoice::Auto && choice != EngineChoice::Cpu)
-            throw UsageError("ranks measure by the cpu engine", "--engine", "leave it out, or use pellucid-cli");
-        return makeEngineOnRanks(*ranks, std::move(volume), quality);
-    }
+    requireEngine(choice);
+    if (Communicator* ranks = ranksOfProcess()) return makeEngineOnRanks(*ranks, std::move(volume), quality);
     if (choice == EngineChoice::Auto)
         return gpuElseCpu<VisibilityEngine>([&] { return makeGlEngine(volume, quality); },
                                             [&] { return makeCpuEngine(volume, quality); });
@@ -90,11 +92,8 @@ private:
 } // namespace
 
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {
-    if (Communicator* ranks = ranksOfProcess()) {
-        if (choice == EngineChoice::Gl || choice == EngineChoice::Slices)
-            throw UsageError("ranks draw by the cpu engine", "--engine", "leave it out, or use pellucid-cli");
-        return makeRendererOnRanks(*ranks, std::move(volume));
-    }
+    requireEngine(choice);
+    if (Communicator* ranks = ranksOfProcess()) return makeRendererOnRanks(*ranks, std::move(volume));
     if (choice == EngineChoice::Auto && !gpuDrawsFaster()) return makeCpuRenderer(std::move(volume));
     if (choice == EngineChoice::Auto)
         return gpuElseCpu<ImageRenderer>([&] { return std::make_unique<GlElseCpu>(volume); },

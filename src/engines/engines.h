@@ -12,6 +12,9 @@ namespace pellucid {
 /// Whether OpenGL finds a real GPU here, not a software rasterizer. Asked once.
 bool haveGpu();
 
+/// Throws UsageError where this process is one of several ranks, which have the cpu engine alone.
+void requireEngine(EngineChoice choice);
+
 /// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality = Quality::Normal);

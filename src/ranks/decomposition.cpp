@@ -98,13 +98,6 @@ int Decomposition::cutOf(const VoxelRegion& region, int axis, double share, cons
     return std::clamp(cut, lo, hi);
 }
 
-int Decomposition::blockOf(const Int3& voxel) const {
-    const Node* node = m_nodes.data();
-    while (node->block < 0)
-        node = &m_nodes[static_cast<std::size_t>(voxel[node->axis] < node->cut ? node->low : node->high)];
-    return node->block;
-}
-
 std::vector<int> Decomposition::order(const std::function<bool(const Node&)>& lowFirst) const {
     std::vector<int> blocks, open{0};
     while (!open.empty()) {

@@ -18,8 +18,6 @@ public:
 
     const Int3& dims() const { return m_dims; }
     const std::vector<VoxelRegion>& blocks() const { return m_blocks; }
-    /// The block that holds a voxel.
-    int blockOf(const Int3& voxel) const;
     /// The blocks from the eye on: `eye` in voxel coordinates, or where rays are parallel their `direction` in voxels.
     std::vector<int> orderFrom(const Vec3& eye) const;
     std::vector<int> orderAlong(const Vec3& direction) const;

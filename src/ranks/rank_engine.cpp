@@ -204,8 +204,8 @@ std::unique_ptr<VisibilityEngine> makeEngineOnRanks(Communicator& ranks, std::sh
     const auto* blocks = dynamic_cast<const RankVoxels*>(volume->elsewhere());
     if (blocks == nullptr) return makeCpuEngine(std::move(volume), quality, sweepKernels().front(), shareOf(ranks));
     if (quality == Quality::High)
-        throw Error("quality high follows lines through the whole volume, whose blocks lie on several ranks",
-                    "--quality", "leave it out, or use pellucid-cli");
+        throw UsageError("quality high follows lines through the whole volume, whose blocks lie on several ranks",
+                         "--quality", "leave it out, or use pellucid-cli");
     return makeRankEngine(blocks->ranks(), blocks->blockOf(*volume));
 }
 

@@ -226,7 +226,7 @@ TEST_CASE("the command in a picture names files as seen from the present folder"
                       "--background",
                       "#fff",
                       "--caption"};
-    cli::keepCommandLine(words);
+    cli::keepCommandLine("pellucid-cli", words);
     CHECK(cli::pictureCommand("--out", "picture.png") ==
           "pellucid-cli render 'data/a b.nrrd' --variable y=c.nrrd --tf=t.tf.json --background '#fff' "
           "--out picture.png");

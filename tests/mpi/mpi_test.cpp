@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cli_runner.h"
+#include "support/text_parts.h"
 
 using namespace pellucid::test;
 using nlohmann::json;
@@ -326,6 +327,19 @@ TEST_CASE("ranks with different programs find out", "[mpi]") {
     CHECK(outcome.err.find("the ranks run different programs") != std::string::npos);
 }
 
+TEST_CASE("processes of srun that MPI has not brought together do not begin", "[mpi]") {
+    const Workshop shop;
+    const Words alone{PELLUCID_MANY, "info", "sample:shells", "--size", "20"};
+    const Outcome outcome = shop.run(Words{"SLURM_STEP_NUM_TASKS=8"} + alone);
+    CHECK(outcome.status == 1);
+    CHECK(outcome.out.empty());
+    CHECK(contains(outcome.err, "srun has started 8 processes"));
+    CHECK(shop.run(Words{"SLURM_STEP_NUM_TASKS=1"} + alone).status == 0);
+    // mpirun on the nodes of a step is another matter.
+    CHECK(shop.run(Words{"SLURM_STEP_NUM_TASKS=8"} + onRanks(1, {"info", "sample:shells", "--size", "20"})).status ==
+          0);
+}
+
 TEST_CASE("a full disk is said by the rank that writes", "[mpi]") {
     const Workshop shop;
     const Outcome outcome =
@@ -339,23 +353,25 @@ TEST_CASE("a full disk is said by the rank that writes", "[mpi]") {
 
 TEST_CASE("what goes wrong on ranks is said once", "[mpi]") {
     const Workshop shop;
-    const auto lines = [](const std::string& text, const std::string& part) {
-        std::size_t count = 0;
-        for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-        return count;
-    };
     const Outcome usage = shop.run(onRanks(3, {"measure", "sample:shells", "--view", "nonsense"}));
     CHECK(usage.status == 2);
-    CHECK(lines(usage.err, "pellucid-mpi: error:") == 1);
+    CHECK(timesIn(usage.err, "pellucid-mpi: error:") == 1);
+    const Outcome nothing = shop.run(onRanks(2, {"measure"}));
+    CHECK(nothing.status == 2);
+    CHECK(contains(nothing.err, "VOLUME is required, pellucid-mpi measure, see pellucid-mpi measure --help"));
+    // Options that ranks do not have are refused first: there is no such volume.
+    const Outcome engine = shop.run(onRanks(2, {"measure", "nothing.nrrd", "--engine", "reference"}));
+    CHECK(engine.status == 2);
+    CHECK(contains(engine.err, "ranks work with the cpu engine, --engine"));
     const Outcome missing =
         shop.run(onRanks(3, {"measure", "nothing.raw", "--raw", "200,200,200,u8", "--tf", "tents:3"}));
     CHECK(missing.status == 1);
-    CHECK(lines(missing.err, "pellucid-mpi: error:") == 1);
+    CHECK(timesIn(missing.err, "pellucid-mpi: error:") == 1);
     CHECK(missing.out.empty());
     shop.write("short.raw", std::string(150 * 140 * 100, 'x'));
     const Outcome cut = shop.run(onRanks(2, {"measure", "short.raw", "--raw", "150,140,132,u8", "--tf", "tents:3"}));
     CHECK(cut.status == 1);
-    CHECK(lines(cut.err, "pellucid-mpi: error: the file has 2100000 bytes") == 1);
+    CHECK(timesIn(cut.err, "pellucid-mpi: error: the file has 2100000 bytes") == 1);
 }
 
 TEST_CASE("a rank that is killed takes the others with it, and no file is left", "[mpi]") {

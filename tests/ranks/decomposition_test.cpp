@@ -12,9 +12,17 @@ bool contains(const VoxelRegion& r, const Int3& v) {
     return v.x >= r.lo.x && v.y >= r.lo.y && v.z >= r.lo.z && v.x < r.hi.x && v.y < r.hi.y && v.z < r.hi.z;
 }
 
+/// The blocks that hold a voxel: one, if all is well.
+std::vector<std::size_t> blocksWith(const Decomposition& blocks, const Int3& voxel) {
+    std::vector<std::size_t> found;
+    for (std::size_t b = 0; b < blocks.blocks().size(); ++b)
+        if (contains(blocks.blocks()[b], voxel)) found.push_back(b);
+    return found;
+}
+
 } // namespace
 
-TEST_CASE("each voxel lies in one block, and it is the block that is told", "[decomposition]") {
+TEST_CASE("each voxel lies in one block", "[decomposition]") {
     Random random(1);
     for (int n = 0; n < 30; ++n) {
         const Int3 dims(1 + random.below(90), 1 + random.below(90), 1 + random.below(90));
@@ -29,7 +37,7 @@ TEST_CASE("each voxel lies in one block, and it is the block that is told", "[de
         CHECK(all == voxelCount(dims));
         for (int i = 0; i < 50; ++i) {
             const Int3 voxel(random.below(dims.x), random.below(dims.y), random.below(dims.z));
-            CHECK(contains(blocks.blocks()[static_cast<std::size_t>(blocks.blockOf(voxel))], voxel));
+            CHECK(blocksWith(blocks, voxel).size() == 1);
         }
     }
 }
@@ -66,7 +74,7 @@ TEST_CASE("no block hides one that stands before it in the order", "[decompositi
             const Int3 voxel(static_cast<int>(std::floor(at.x + 0.5)), static_cast<int>(std::floor(at.y + 0.5)),
                              static_cast<int>(std::floor(at.z + 0.5)));
             if (!contains({Int3(0), dims}, voxel)) continue;
-            const int now = place[static_cast<std::size_t>(blocks.blockOf(voxel))];
+            const int now = place[blocksWith(blocks, voxel).at(0)];
             CHECK(now >= last);
             last = now;
         }

@@ -1,5 +1,6 @@
 #include "options/engine_options.h"
 
+#include "engines/engines.h"
 #include "options/camera_options.h"
 #include "options/saliency_options.h"
 
@@ -20,6 +21,7 @@ void EngineOptions::addProfile(CLI::App& app) { given.add(app, kEngineGroup, {"p
 void EngineOptions::addDefinitions(CLI::App& app) { given.add(app, kEngineGroup, {"profile"}); }
 
 void EngineOptions::applyTo(SceneInputs& inputs) const {
+    if (given.has("engine")) requireEngine(given.values().engine); // before anything is read
     inputs.session.measure.edit([this](MeasureSettings& m) { given.applyTo(m); });
     if (given.has("along") && !isPublished(*inputs.session.measure))
         throw UsageError("only the published profile looks along an axis", "--along",

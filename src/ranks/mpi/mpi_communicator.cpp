@@ -31,23 +31,28 @@ void require(int code, const char* doing) {
                 "", "see what mpirun says of the network and the ranks");
 }
 
+/// The longest pauses between two questions whether something has ended. Ranks that still compute may take long, so
+/// that asking must cost little. Once all ranks take part, each question moves the data on: without the kernel's help,
+/// MPI copies the next part of a large message only when it is asked.
+constexpr std::chrono::microseconds kUntilAllCome{10'000}, kWhileDataMove{100};
+
 /// Waits for what has been begun. MPI's own calls ask without a pause, and take the processor from ranks that have
-/// something to do; here the pauses grow with the wait, so that asking costs little however long the others take, and
-/// the answer is seen a quarter later at most.
-void finish(std::span<MPI_Request> requests, const char* doing, const Communicator::Work& meanwhile = {}) {
-    constexpr std::chrono::microseconds kAtHand{50}, kLongestPause{10'000};
+/// something to do; here the pauses grow with the wait, up to `longest`.
+void finish(std::span<MPI_Request> requests, const char* doing, std::chrono::nanoseconds longest = kWhileDataMove,
+            const Communicator::Work& meanwhile = {}) {
+    constexpr std::chrono::microseconds kAtHand{50};
     const auto begin = std::chrono::steady_clock::now();
     for (int done = 0;;) {
         require(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE), doing);
         if (done != 0) return;
         if (meanwhile && meanwhile()) continue;
         const std::chrono::nanoseconds waited = std::chrono::steady_clock::now() - begin;
-        if (waited > kAtHand)
-            std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(waited / 4, kLongestPause));
+        if (waited > kAtHand) std::this_thread::sleep_for(std::min(waited / 4, longest));
     }
 }
-void finish(MPI_Request request, const char* doing, const Communicator::Work& meanwhile = {}) {
-    finish({&request, 1}, doing, meanwhile);
+void finish(MPI_Request request, const char* doing, std::chrono::nanoseconds longest = kWhileDataMove,
+            const Communicator::Work& meanwhile = {}) {
+    finish({&request, 1}, doing, longest, meanwhile);
 }
 
 /// Of the program that runs, so that ranks with different ones find out.
@@ -141,7 +146,7 @@ void MpiRanks::requireAll(const Work& meanwhile) {
     int well = 1, all = 0;
     MPI_Request request = MPI_REQUEST_NULL;
     require(MPI_Iallreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm, &request), "reach all ranks");
-    finish(request, "reach all ranks", meanwhile);
+    finish(request, "reach all ranks", kUntilAllCome, meanwhile);
     if (all == 1) return;
     m_lost = true;
     throw RankLost();
@@ -154,7 +159,7 @@ MpiRanks::Ending MpiRanks::leave(const Ending& mine) {
         int well = mine.status == 0 ? 1 : 0, all = 0;
         MPI_Request request = MPI_REQUEST_NULL; // the counterpart of requireAll()'s
         MPI_Iallreduce(&well, &all, 1, MPI_INT, MPI_MIN, m_group->comm, &request);
-        finish(request, "end");
+        finish(request, "end", kUntilAllCome);
     }
     const std::string& text = mine.message;
     const std::array<int, 2> own{mine.status, static_cast<int>(text.size())};
