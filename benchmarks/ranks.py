@@ -45,9 +45,7 @@ def touch(gib):
 class Run:
     """A command: its processor time and how long it took, in seconds."""
 
-    def __init__(self, command, touched):
-        if touched:
-            touch(touched)
+    def __init__(self, command):
         begin = time.monotonic()
         try:
             process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
@@ -93,14 +91,16 @@ def main():
     parser.add_argument("--ranks", default="2,4,8", type=lambda text: [positive(n) for n in text.split(",")])
     parser.add_argument("--threads", default=1, type=positive, help="of the one process (default 1)")
     parser.add_argument("--rounds", default=3, type=positive)
-    parser.add_argument("--touch", default=0, type=int, metavar="GIB", help="memory to touch before each run")
+    parser.add_argument("--touch", type=positive, metavar="GIB", help="memory to touch before each run")
     parser.add_argument("--mpirun", default="mpirun --oversubscribe --bind-to none", help="how ranks are started")
     options = parser.parse_args(own)
 
     measure = ["measure", options.volume, "--tf", options.tf, "--view", options.view, *others]
 
     def run(name, command):
-        result = Run(command, options.touch)
+        if options.touch:
+            touch(options.touch)
+        result = Run(command)
         print(f"{name}: {result}", flush=True)
         return result
 
